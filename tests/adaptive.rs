@@ -391,8 +391,18 @@ fn steps_do_not_shrink_by_rounding_errors() {
     }
 }
 
+/// The iterations of the steps up to a time.
+fn iterations_to<S: Convertible<N>, const N: usize>(end: f64, mut run: Run<Adaptive<Gauss<8>>, S, N>) -> f64 {
+    let mut sum = 0;
+    while run.t() < end {
+        run.step().expect("a step");
+        sum += run.iterations();
+    }
+    f64::from(sum)
+}
+
 /// Steps of a tolerance solve their stages to a part of it, in fewer iterations than those of the same first step. A shift
-/// of the origin changes neither.
+/// of the origin hardly changes that.
 #[test]
 fn a_tolerance_saves_iterations() {
     let origin = 1e6;
@@ -400,23 +410,19 @@ fn a_tolerance_saves_iterations() {
     let exact = start.integrate(Gauss::<8>, 0.002).expect("a start").until(5.0).expect("a motion");
     for (tolerance, most) in [(1e-3, 0.6), (1e-6, 0.75), (1e-9, 0.85)] {
         let h = start.length(&Gauss::<8>.adaptive(), Tolerance(tolerance)).expect("a length");
-        let iterations = |run: &mut Run<Adaptive<Gauss<8>>, Stiff, 2>| {
-            let mut sum = 0;
-            while run.t() < 5.0 {
-                run.step().expect("a step");
-                sum += run.iterations();
-            }
-            f64::from(sum)
-        };
-        let to_rounding = iterations(&mut start.integrate(Gauss::<8>.adaptive(), h).expect("a start"));
+        let to_rounding = iterations_to(5.0, start.integrate(Gauss::<8>.adaptive(), h).expect("a start"));
         let run = start.integrate(Gauss::<8>.adaptive(), Tolerance(tolerance)).expect("a start");
-        let part = iterations(&mut run.clone()) / to_rounding;
+        let part = iterations_to(5.0, run.clone()) / to_rounding;
         let off = (run.clone().until(5.0).expect("a motion").q - exact.q).norm();
         let shifted = Shifted { o: origin, ..Shifted::default() }.at(0.0, [1.0 + origin, 1.5], [0.0, 0.0]);
         let mut aside = shifted.integrate(Gauss::<8>.adaptive(), Tolerance(tolerance)).expect("a start");
+        let far = iterations_to(5.0, aside.clone()) / to_rounding;
         let moved = (aside.until(5.0).expect("a motion").q - exact.q - SVector::from([origin, 0.0])).norm();
-        println!("{tolerance:e}: {part:.2} of the iterations, off by {off:.1e}, far from the origin by {moved:.1e}");
-        assert!(part < most && off < tolerance && moved < tolerance, "{tolerance:e}: {part} {off:e} {moved:e}");
+        println!(
+            "{tolerance:e}: {part:.2} of the iterations, off by {off:.1e}, far from the origin {far:.2}, {moved:.1e}"
+        );
+        let is_accurate = off < tolerance && moved < tolerance;
+        assert!(part < most && far < 1.2 * most && is_accurate, "{tolerance:e}: {part} {far} {off:e} {moved:e}");
     }
 }
 
@@ -558,7 +564,7 @@ fn a_loose_tolerance_has_followers() {
 }
 
 #[test]
-fn a_run_goes_on_where_longer_steps_have_no_solution() {
+fn a_run_goes_on_although_longer_steps_have_no_solution() {
     // Each run ended before, since no step of some places has the phase of the first one.
     for (q, h) in [([2.0, 1.0], 0.46), ([2.5, -1.0], 0.3), ([-1.0, 2.8], 0.3)] {
         let start = DoublePendulum::default().at(0.0, q, [0.0, 0.0]);

@@ -67,8 +67,11 @@ fn is_proven<const N: usize, const S: usize>(
     is_fast || is_resolved(&step.stages, &weights(system, node, step)) || is_linear(system, node, step)
 }
 
+/// The largest distance between two results for one solution, in units of the accuracy of its stages.
+const ROUGHLY: f64 = 64.0;
+
 /// The step of a part of the length, from stages equal to the node and with forces at the velocities of the last iteration,
-/// whose contraction may prove it. In curvilinear coordinates only: elsewhere this has been tried. From rest a velocity
+/// whose contraction may prove it; in curvilinear coordinates, since other iterations do so anyway. From rest a velocity
 /// may grow as t², t³ or later, so that its stages are not resolved in a step of any length.
 fn lagging<const N: usize, const S: usize>(
     system: &ErasedSystem<'_, N>,
@@ -116,8 +119,10 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
             return Ok(step);
         }
         let is_certain = |step: &Step<N, S>| step.convergence.iterations <= FEW || step.convergence.contraction <= FAST;
-        if let Some(step) = lagging(erased, self, (1.0, &constant(system, self.node)?)).filter(is_certain) {
-            return Ok(step);
+        if follows_momenta::<_, f64, N, S>(erased)
+            && let Some(found) = lagging(erased, self, (1.0, &constant(system, self.node)?)).filter(is_certain)
+        {
+            return Ok(Step { pause: step.pause, ..found });
         }
         self.continued(system, instructions, Some(step), cache)
     }
@@ -163,7 +168,8 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         let steps = &mut StepsFrom { start: self, system, instructions, cache, from: &from, weights, taken };
         let too_long = |part: f64| StepError::TooLong { t: self.node.t, h: self.h, longest: (part * self.h).abs() };
         let found = branch::follow(steps).map_err(too_long)?;
-        let is_same = |step: &Step<N, S>| distance([&step.stages, &found.stages], &from, &weights) <= EQUAL;
+        let equal = EQUAL.max(ROUGHLY * self.accuracy * f64::EPSILON);
+        let is_same = |step: &Step<N, S>| distance([&step.stages, &found.stages], &from, &weights) <= equal;
         Ok(taken.filter(is_same).unwrap_or(Step { linearization: None, ..found }))
     }
 }
@@ -186,8 +192,8 @@ where
     Y: Convertible<N>,
 {
     fn solved(&mut self, part: f64, stages: &Stages<N, S>) -> Option<Step<N, S>> {
-        let start =
-            Start { h: part * self.start.h, stages, are_last: false, before: &Convergence::NONE, ..*self.start };
+        let (h, before, accuracy) = (part * self.start.h, &Convergence::NONE, EXACT);
+        let start = Start { h, stages, are_last: false, before, accuracy, ..*self.start };
         start.unproven(self.system, self.instructions, self.cache).ok()
     }
 }

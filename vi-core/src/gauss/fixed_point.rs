@@ -13,7 +13,7 @@
 //! the first small change, but when the remaining error is negligible. An error of the stages with the same sign in
 //! every step would let the energy drift. Rounding hides that error in the change, so the iteration predicts it: each
 //! iteration multiplies it by the contraction, which is measured while changes exceed rounding. Stages of a tolerance have
-//! larger units, in which no rounding hides the error.
+//! larger units: changes of 4 units, 64 of velocities, and a thousandth of one.
 
 use super::stages::{EXACT, Stages};
 use crate::error::StepError;
@@ -42,8 +42,6 @@ const STALLS: u32 = 4;
 pub(crate) const VELOCITY: f64 = 1.0 / 16.0;
 /// Accepted stage error of a step, in ulps of q.
 const NEGLIGIBLE: f64 = 1.0 / 1024.0;
-/// The part of a measured error that counts, because rounding has a share in it. With larger units than ulps.
-const MEASURED: f64 = 1.0 / 64.0;
 /// Change, in ulps, after which the ulps are recomputed: a sixteenth of the number itself.
 const COARSE: f64 = 0.0625 / f64::EPSILON;
 
@@ -211,14 +209,13 @@ pub(crate) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
             break false;
         }
         let last = state.change;
-        if last > COARSE {
+        if last * accuracy > COARSE {
             equations.take_roundings(y);
         }
         let mut change = equations.change(x, y);
-        if accuracy > EXACT {
-            // Rounding hides no large error of a step from x, such as that of a contraction that has changed since the
-            // last step.
-            left = left.max(MEASURED * equations.passed_on(state.contraction.max(change / last)) * change);
+        if accuracy > EXACT && state.iterations > 1 {
+            // These steps take few iterations: without this the contraction may be that of an earlier step.
+            state.contraction = state.contraction.max(change / last);
         }
         let is_small = |change, left| change <= FLOOR && (left <= NEGLIGIBLE || change == 0.0);
         if is_small(change, left) || change >= least {

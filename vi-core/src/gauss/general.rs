@@ -283,7 +283,7 @@ where
             let missing = self.evaluate_with_masses(x, &mut inverse, momenta.as_ref());
             return add_products::<N, S, FUSED>(n, &mut self.velocity, &inverse, &missing);
         };
-        let are_near = before.change < NEAR && before.contraction <= FAST;
+        let are_near = before.change * self.accuracy < NEAR && before.contraction <= FAST;
         let missing = match kept {
             Some(_) if are_near => self.evaluate(x),
             _ => self.evaluate_with_masses(x, kept.insert(zeros), None),

@@ -313,8 +313,11 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
             None => (self.in_scalars(erased, None), at),
         };
         let StageSolution { increment, iteration, .. } = &solved;
-        let not_converged =
-            || iteration.convergence.not_converged(increment, [self.node.t, self.h], at.stiffness(erased));
+        let not_converged = || {
+            let Convergence { change, .. } = iteration.convergence;
+            let in_ulps = Convergence { change: change * self.accuracy, ..iteration.convergence };
+            in_ulps.not_converged(increment, [self.node.t, self.h], at.stiffness(erased))
+        };
         let accepted = self.accepted(erased, &solved, newton.as_deref());
         let step = accepted.ok_or_else(|| lost_force(system, self.node, self.h).unwrap_or_else(not_converged))?;
         let linearization = at.after(step.convergence.iterations);

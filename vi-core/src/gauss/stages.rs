@@ -247,7 +247,7 @@ pub(crate) fn relaxed<const N: usize, const S: usize>(
     if accuracy > EXACT {
         for k in 0..n {
             let unit = accuracy * maximum(&of[k].map(f64::abs));
-            roundings[k] = roundings[k].min(1.0 / (unit + f64::MIN_POSITIVE));
+            roundings[k] = roundings[k].min(1.0 / (unit + f64::MIN_POSITIVE).min(f64::MAX));
         }
     }
     roundings

@@ -124,6 +124,8 @@ pub struct Facts {
     pub rule: Option<&'static str>,
     /// Whether [`Method::solve`] finds the step length itself.
     pub finds_length: bool,
+    /// Whether these lengths follow the forces, so that a few steps show the errors of all.
+    pub follows_forces: bool,
     /// Whether the method takes systems with constraints, whose reactions may do work.
     pub has_reactions: bool,
 }

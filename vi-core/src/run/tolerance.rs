@@ -17,9 +17,9 @@ use num_traits::Float as _;
 /// A tolerance instead of a step length: `start.integrate(method, Tolerance(1e-9))`.
 ///
 /// The run then has a constant step. Its largest relative error over the first stretch is at most the tolerance, and a
-/// length that is longer by a sixth would exceed it. If steps stop existing before the tolerance is reached, the run
+/// length that is longer by a third would exceed it. If steps stop existing before the tolerance is reached, the run
 /// uses half of the longest length that exists. The stretch lasts until the coordinates have turned back twice or more,
-/// at most 4096 steps, or 1024/p steps of order p if the method finds their lengths. A symplectic method keeps its step. A motion that becomes faster later exceeds the tolerance, and
+/// at most 4096 steps, or 1024/p steps of order p if their lengths follow the forces. A symplectic method keeps its step. A motion that becomes faster later exceeds the tolerance, and
 /// [`Run::monitored`] reports it. The global error is larger: about the tolerance times the number of steps, or more.
 ///
 /// [`Run::monitored`]: crate::Run::monitored
@@ -66,12 +66,12 @@ const TRIALS: u32 = 60;
 const FACTOR: f64 = 8.0;
 /// The error target of a trial, relative to the tolerance.
 const AIM: f64 = 0.7;
-/// A length is accepted if the longest one is at most this factor longer.
+/// A length is accepted if that of the target is at most this factor longer.
 const NEARLY: f64 = 1.15;
 /// Shortest step that is tried while none exists, and longest step, in units of the time scale of the start.
 const SHORTEST: f64 = 1e-10;
 const LONGEST: f64 = 1e3;
-/// Most steps of a trial whose lengths follow the motion, times half the order: fewer than of equal steps tell as much.
+/// Most steps of a trial whose lengths follow the forces, times half the order. Their errors are alike.
 const FOLLOWING: u64 = 512;
 /// Consecutive shorter trials without a smaller error, after which rounding dominates.
 const STALLED: u32 = 3;
@@ -184,8 +184,8 @@ fn over_stretch<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, 
 ) -> Result<Option<f64>, StepError> {
     let mut run = start.integrate(method.clone(), h)?;
     let mut monitor = ErrorMonitor::of_steps(&run);
-    let Facts { order, finds_length, .. } = method.facts();
-    let most = if finds_length { FOLLOWING / u64::from(order / 2).max(1) } else { u64::MAX };
+    let Facts { order, follows_forces, .. } = method.facts();
+    let most = if follows_forces { FOLLOWING / u64::from(order / 2).max(1) } else { u64::MAX };
     while !monitor.is_over() && monitor.steps < most {
         match run.single_step() {
             Ok(_) => monitor.watch(&run),

@@ -70,7 +70,7 @@ macro_rules! ends {
             Self { axis: self.axis.continued(Outside::Extend), ..self }
         }
 
-        /// The first and the last knot.
+        /// Both ends of the range.
         #[must_use]
         pub const fn range(&self) -> [f64; 2] {
             self.axis.range

@@ -18,7 +18,8 @@ const STEPS: f64 = 4000.0;
 const COARSEST: i32 = 4;
 /// Number of timed repetitions.
 const ROUNDS: u32 = 7;
-/// Tolerances of DOP853 and of adaptive steps, as powers of √10; each changes the steps by a seventh.
+/// Tolerances of DOP853 and of adaptive steps, as powers of √10; each changes the steps by a
+/// seventh or a fourteenth.
 const TOLERANCES: core::ops::RangeInclusive<i32> = -28..=-6;
 
 /// Results of the comparison.

@@ -32,8 +32,8 @@ use reversible::Reversible;
 /// A method whose steps follow the motion: `Gauss::<8>.adaptive()`. See the [module](self).
 ///
 /// The step of a run is the first one, or is found from a [`Tolerance`](crate::Tolerance) of all steps of the first
-/// stretch. Its sign is the direction of time. With a tolerance the stages of irreversible motions are solved to a part of
-/// it; all others to rounding.
+/// stretch. Its sign is the direction of time. With a tolerance the stages of irreversible motions without constraints are
+/// solved to a part of it, from three stages on; all others to rounding.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Adaptive<M> {
     method: M,
@@ -183,7 +183,7 @@ where
     type DenseOutput = <Solver<S, N, STAGES> as Method<S, N>>::DenseOutput;
 
     fn facts(&self) -> Facts {
-        Facts { finds_length: true, ..Method::<S, N>::facts(&self.method) }
+        Facts { finds_length: true, follows_forces: true, ..Method::<S, N>::facts(&self.method) }
     }
 
     fn with_tolerance(&self, tolerance: f64) -> Self {
@@ -293,8 +293,12 @@ where
             Some(Law::Reversible(law)) => law.is_valid(h),
             Some(Law::Decaying(law)) => law.is_valid(),
         };
-        if !(is_length && is_law && (0.0..1.0).contains(tolerance)) {
-            return Err(StepError::NonFinite { t: node.t, quantity: "length of the last step", expression: None });
+        let wrong = |quantity| Err(StepError::NonFinite { t: node.t, quantity, expression: None });
+        if !(is_length && is_law) {
+            return wrong("length of the last step");
+        }
+        if !(0.0..1.0).contains(tolerance) {
+            return wrong("tolerance of the steps");
         }
         solver::<S, N, STAGES>().check(system, (node, steps), *last)
     }

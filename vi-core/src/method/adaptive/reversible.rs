@@ -15,6 +15,9 @@
 //! and Söderlind (SIAM J. Sci. Comput. 26, 2005), ρ₊ = ρ₋ + ε ω'/ω with h = ε/ρ, needs one step instead of three.
 //! But if ω changes much within a step, as with few steps in the period of an oscillator, ρ departs from ω.
 //!
+//! If longer steps have no solution and shorter ones have a smaller phase, the longest step found is taken. It is not
+//! reversible.
+//!
 //! With terms that are linear in the velocities a motion is not reversible: steps back still return, but no law bounds
 //! the energy error.
 
@@ -193,8 +196,9 @@ impl Reversible {
         // The polynomials of fewer stages are too rough.
         let mut is_first = STAGES >= FEWEST;
         let (mut quick, mut is_near) = (QUICK, false);
-        // The longest step whose phase is too small, and the shortest length without a step.
-        let mut shorter: Option<(f64, End<S, N, STAGES>)> = None;
+        // The longest step whose phase is too small, with the length that its slope predicts, and the shortest length without
+        // a step.
+        let mut shorter: Option<([f64; 2], End<S, N, STAGES>)> = None;
         let mut without = f64::INFINITY;
         let following = |h: f64, found: &Phase, slope: f64, steps| {
             let ratio = h / last;
@@ -203,7 +207,8 @@ impl Reversible {
             Following { steps, h, law: Some(Law::Reversible(Self { ahead, ratio, slope, ..*self })), ..*memory }
         };
         for trial in 0..TRIALS {
-            let is_longest = shorter.as_ref().is_some_and(|(longest, _)| *longest > LONG * without);
+            let is_longest = |[longest, wanted]: [f64; 2]| longest > LONG * without && wanted >= without;
+            let is_longest = shorter.as_ref().is_some_and(|(lengths, _)| is_longest(*lengths));
             if is_longest || !moves_time(h, node.t)? {
                 break;
             }
@@ -241,18 +246,21 @@ impl Reversible {
             search.learn(h, off);
             if off.abs() < if trial < FEW { NEAR } else { ROUGH } {
                 if self.is_too_long::<S, N, STAGES>(system, (&start, node), (&steps, h)) {
-                    search = PhaseSearch::new([0.0, h], slope);
+                    (search, shorter) = (PhaseSearch::new([0.0, h], slope), None);
                     (h, is_near) = (search.halved(h), false);
                     guess = Solver::<S, N, STAGES>::again(system, &steps, node, h)?;
                     continue;
                 }
                 return Ok((end, following(h, &found, search.slope, steps)));
             }
+            let is_longer = |length: f64| shorter.as_ref().is_none_or(|([longest, _], _)| length > *longest);
             if off < 0.0
                 && (without.is_finite() || trial >= FEW)
-                && shorter.as_ref().is_none_or(|(longest, _)| h.abs() > *longest)
+                && is_longer(h.abs())
+                && !self.is_too_long::<S, N, STAGES>(system, (&start, node), (&steps, h))
             {
-                shorter = Some((h.abs(), (end, following(h, &found, search.slope, steps.clone()))));
+                let lengths = [h.abs(), h.abs() * (-off / search.slope).exp()];
+                shorter = Some((lengths, (end, following(h, &found, search.slope, steps.clone()))));
             }
             let solved = h;
             h = if core::mem::take(&mut is_first) {

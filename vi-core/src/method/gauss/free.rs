@@ -56,9 +56,9 @@ impl<const STAGES: usize> Default for FreeGauss<STAGES> {
     }
 }
 
-/// The unit of the stages of a step with a tolerance, in units of the tolerance. Their changes are at most four units, and
-/// the error of the step is below a thousandth of one.
-const PART: f64 = 1.0 / 16.0;
+/// The unit of the stages of a step with a tolerance ε, in units of ε. The last change of velocities is at most 64 units,
+/// and the error that the contraction predicts for the step is below a thousandth of a unit.
+const PART: f64 = 1.0 / 64.0;
 
 /// The stages of the last step.
 #[derive(Clone, Copy, Debug, PartialEq)]
