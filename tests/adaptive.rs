@@ -200,7 +200,8 @@ fn a_motion_returns_with_its_lengths() {
 
 #[test]
 fn few_steps_pass_a_perihelion() {
-    for (e, least) in [(0.9, 10.0), (0.99, 150.0)] {
+    // Measured: 10.0 times as many equal steps, and 150.
+    for (e, least) in [(0.9, 9.9), (0.99, 140.0)] {
         let (system, end) = (Planet { mu: 1.6 }, 2.3);
         let (q, v) = perihelion(system.mu, e);
         let exact = on_ellipse(system.mu, e, end);
@@ -408,7 +409,7 @@ fn a_tolerance_saves_iterations() {
     let origin = 1e6;
     let start = Stiff::default().at(0.0, [1.0, 1.5], [0.0, 0.0]);
     let exact = start.integrate(Gauss::<8>, 0.002).expect("a start").until(5.0).expect("a motion");
-    for (tolerance, most) in [(1e-3, 0.6), (1e-6, 0.75), (1e-9, 0.85)] {
+    for (tolerance, most) in [(1e-3, 0.55), (1e-6, 0.7), (1e-9, 0.85)] {
         let h = start.length(&Gauss::<8>.adaptive(), Tolerance(tolerance)).expect("a length");
         let to_rounding = iterations_to(5.0, start.integrate(Gauss::<8>.adaptive(), h).expect("a start"));
         let run = start.integrate(Gauss::<8>.adaptive(), Tolerance(tolerance)).expect("a start");
@@ -422,7 +423,9 @@ fn a_tolerance_saves_iterations() {
             "{tolerance:e}: {part:.2} of the iterations, off by {off:.1e}, far from the origin {far:.2}, {moved:.1e}"
         );
         let is_accurate = off < tolerance && moved < tolerance;
-        assert!(part < most && far < 1.2 * most && is_accurate, "{tolerance:e}: {part} {far} {off:e} {moved:e}");
+        // Measured: 0.52, 0.65, 0.81 and 4.0e-9, 5.6e-11, 3.3e-12; far from the origin, where a rounding of x is 1e-10, 0.50,
+        // 0.78, 1.12 and 1.1e-8, 3.4e-9, 3.3e-10.
+        assert!(part < most && far < 1.2 && is_accurate, "{tolerance:e}: {part} {far} {off:e} {moved:e}");
     }
 }
 
@@ -565,8 +568,8 @@ fn a_loose_tolerance_has_followers() {
 
 #[test]
 fn a_run_goes_on_although_longer_steps_have_no_solution() {
-    // Each run ended before, since no step of some places has the phase of the first one.
-    for (q, h) in [([2.0, 1.0], 0.46), ([2.5, -1.0], 0.3), ([-1.0, 2.8], 0.3)] {
+    // The first run ended at t = 11.06, where no step has the phase of the first one.
+    for (q, h) in [([2.0, 1.0], 0.462_648_525_554_094_4), ([2.5, -1.0], 0.3), ([-1.0, 2.8], 0.3)] {
         let start = DoublePendulum::default().at(0.0, q, [0.0, 0.0]);
         let mut run = start.integrate(Gauss::<8>.adaptive(), h).expect("a start");
         let (energy, mut worst, mut steps) = (run.energy().expect("an energy"), 0.0_f64, 0);

@@ -65,7 +65,8 @@ impl EnergyPath {
 
     /// `|H − H(start)|` at the current node of a run, in two units:
     ///
-    /// * relative to `Σ |p v|`: its mean so far, or its present value if that is larger; zero up to [`DRIFTED`];
+    /// * relative to `Σ |p v|`: its mean so far, or its value at an end of the last window if that is larger, since the
+    ///   first window may end at a turning point; zero up to [`DRIFTED`];
     /// * in an escape, in which `Σ |p v|` is [`ESCAPED`] times its largest value before the present rise: relative to
     ///   the geometric mean of `Σ |p v|`, or to `|H(start)|` if that is larger; zero up to [`BROKEN`]. It holds for the
     ///   present state only: after a near collision the energy returns.
@@ -87,10 +88,11 @@ impl EnergyPath {
             self.before = self.largest;
         }
         self.largest = self.largest.max(action);
+        let most = self.action.max(action);
         (self.until, self.action) = (t, action);
         let mean = self.integral / (t - self.from).abs();
         self.has_mean |= action <= RISEN * mean;
-        let size = if mean < action { action } else { mean };
+        let size = if mean < most { most } else { mean };
         let change = (energy - self.start).abs();
         let is_visible = change > FAINT * T::EPSILON * (self.start.abs() + terms);
         if !(self.has_mean && is_visible) {
