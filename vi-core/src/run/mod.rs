@@ -99,7 +99,10 @@ impl<S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> Start<S, N, T> {
         angles::check(&system, &state.q, &Turns::zeros())?;
         let mut node = Node::new(state, T::zero());
         let explained = |failure: StepError| failure.explained_at(&system, &Node::new(state, T::zero()), T::zero());
-        let method = h.tolerance().map_or(method.clone(), |tolerance| method.with_tolerance(tolerance));
+        let method = match h.tolerance() {
+            Some(tolerance) => method.with_tolerance(tolerance),
+            None => method,
+        };
         let h = self.length(&method, h)?;
         method.check_length(&system, h)?;
         let memory = method.begin(&system, &mut node, h).map_err(explained)?;

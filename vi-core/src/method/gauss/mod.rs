@@ -39,6 +39,7 @@ pub trait StageSolver<S, const N: usize, const STAGES: usize>: Method<S, N, Memo
     /// The solver of steps whose errors may be as large as a tolerance, relative to their motion; zero for steps whose
     /// stages are solved to rounding.
     #[doc(hidden)]
+    #[must_use]
     fn within(_tolerance: f64) -> Self {
         Self::default()
     }
