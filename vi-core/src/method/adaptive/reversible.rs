@@ -15,9 +15,6 @@
 //! and Söderlind (SIAM J. Sci. Comput. 26, 2005), ρ₊ = ρ₋ + ε ω'/ω with h = ε/ρ, needs one step instead of three.
 //! But if ω changes much within a step, as with few steps in the period of an oscillator, ρ departs from ω.
 //!
-//! If longer steps have no solution and shorter ones have a smaller phase, the longest step found is taken. It is not
-//! reversible.
-//!
 //! With terms that are linear in the velocities a motion is not reversible: steps back still return, but no law bounds
 //! the energy error.
 
@@ -61,8 +58,6 @@ const MOST: f64 = 2.0;
 const SHORT: f64 = 1.5;
 /// Lengths without a quick step, mostly much too long, after which a step is solved in any way.
 const QUICK: usize = 4;
-/// A step is the longest one if its length is more than this part of a length without a step.
-const LONG: f64 = 0.8;
 /// The largest factor between the lengths of two steps of which one proves the other.
 const PROVING: f64 = 1.5;
 
@@ -175,7 +170,7 @@ impl Reversible {
         [phase * h.signum(), floor, ahead, ratio, slope].iter().all(|number| *number > 0.0 && number.is_normal())
     }
 
-    /// The step whose phase is that of the first one, or the longest step if all have less: longer ones have no solution.
+    /// The step whose phase is that of the first one.
     ///
     /// # Errors
     /// The errors of the solver for the shortest length tried; [`StepError::LengthsLost`] if no length has this phase.
@@ -196,20 +191,8 @@ impl Reversible {
         // The polynomials of fewer stages are too rough.
         let mut is_first = STAGES >= FEWEST;
         let (mut quick, mut is_near) = (QUICK, false);
-        // The longest step whose phase is too small, with the length that its slope predicts, and the shortest length without
-        // a step.
-        let mut shorter: Option<([f64; 2], End<S, N, STAGES>)> = None;
-        let mut without = f64::INFINITY;
-        let following = |h: f64, found: &Phase, slope: f64, steps| {
-            let ratio = h / last;
-            // Ratios change by nearly equal factors, until the forces turn.
-            let ahead = found.ratio().min(ratio * (ratio / before).clamp(0.7, 1.4));
-            Following { steps, h, law: Some(Law::Reversible(Self { ahead, ratio, slope, ..*self })), ..*memory }
-        };
         for trial in 0..TRIALS {
-            let is_longest = |[longest, wanted]: [f64; 2]| longest > LONG * without && wanted >= without;
-            let is_longest = shorter.as_ref().is_some_and(|(lengths, _)| is_longest(*lengths));
-            if is_longest || !moves_time(h, node.t)? {
+            if !moves_time(h, node.t)? {
                 break;
             }
             let (solver, at) = (solver::<S, N, STAGES>(), Problem { h, ..at });
@@ -227,7 +210,6 @@ impl Reversible {
                 Ok(Some(found)) => found,
                 left => {
                     h = if let Err(error) = left {
-                        without = without.min(h.abs());
                         failure = error;
                         search.shorter(h)
                     } else {
@@ -246,21 +228,16 @@ impl Reversible {
             search.learn(h, off);
             if off.abs() < if trial < FEW { NEAR } else { ROUGH } {
                 if self.is_too_long::<S, N, STAGES>(system, (&start, node), (&steps, h)) {
-                    (search, shorter) = (PhaseSearch::new([0.0, h], slope), None);
+                    search = PhaseSearch::new([0.0, h], slope);
                     (h, is_near) = (search.halved(h), false);
                     guess = Solver::<S, N, STAGES>::again(system, &steps, node, h)?;
                     continue;
                 }
-                return Ok((end, following(h, &found, search.slope, steps)));
-            }
-            let is_longer = |length: f64| shorter.as_ref().is_none_or(|([longest, _], _)| length > *longest);
-            if off < 0.0
-                && (without.is_finite() || trial >= FEW)
-                && is_longer(h.abs())
-                && !self.is_too_long::<S, N, STAGES>(system, (&start, node), (&steps, h))
-            {
-                let lengths = [h.abs(), h.abs() * (-off / search.slope).exp()];
-                shorter = Some((lengths, (end, following(h, &found, search.slope, steps.clone()))));
+                let ratio = h / last;
+                // Ratios change by nearly equal factors, until the forces turn.
+                let ahead = found.ratio().min(ratio * (ratio / before).clamp(0.7, 1.4));
+                let law = Law::Reversible(Self { ahead, ratio, slope: search.slope, ..*self });
+                return Ok((end, Following { steps, h, law: Some(law), ..*memory }));
             }
             let solved = h;
             h = if core::mem::take(&mut is_first) {
@@ -271,7 +248,7 @@ impl Reversible {
             is_near = h / solved < PROVING && solved / h < PROVING;
             guess = Solver::<S, N, STAGES>::again(system, &steps, node, h)?;
         }
-        shorter.map(|(_, step)| step).ok_or(failure)
+        Err(failure)
     }
 
     /// Whether the first half of a step has nearly its phase or more, so that the places where the phase is measured miss
