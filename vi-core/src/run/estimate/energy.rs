@@ -65,8 +65,8 @@ impl EnergyPath {
 
     /// `|H − H(start)|` at the current node of a run, in two units:
     ///
-    /// * relative to `Σ |p v|`: its mean so far, or its value at an end of the last window if that is larger, since the
-    ///   first window may end at a turning point; zero up to [`DRIFTED`];
+    /// * relative to `Σ |p v|`: its mean so far, or its present value if that is larger, in the first window also that
+    ///   at its start, since it may end at a turning point; zero up to [`DRIFTED`];
     /// * in an escape, in which `Σ |p v|` is [`ESCAPED`] times its largest value before the present rise: relative to
     ///   the geometric mean of `Σ |p v|`, or to `|H(start)|` if that is larger; zero up to [`BROKEN`]. It holds for the
     ///   present state only: after a near collision the energy returns.
@@ -79,6 +79,7 @@ impl EnergyPath {
         let Some(Energies { energy, action, terms }) = Energies::at(run) else { return [0.0; 2] };
         let t = run.node.t.to_f64();
         let (least, duration) = (self.action.min(action), (t - self.until).abs());
+        let is_first = self.integral == 0.0;
         self.integral += least * duration;
         if least > 0.0 {
             self.logarithms += least.ln() * duration;
@@ -88,7 +89,7 @@ impl EnergyPath {
             self.before = self.largest;
         }
         self.largest = self.largest.max(action);
-        let most = self.action.max(action);
+        let most = if is_first { self.action.max(action) } else { action };
         (self.until, self.action) = (t, action);
         let mean = self.integral / (t - self.from).abs();
         self.has_mean |= action <= RISEN * mean;
