@@ -7,6 +7,7 @@ use super::reference::{Agreement, Reference};
 use std::time::Instant;
 use vi_erased::System;
 use vi_erased::plan::PhasePoint;
+use vi_erased::simulation::Simulation;
 use vi_erased::studies::rival::Ended;
 use vi_report::entry::Entry;
 use vi_report::numbers::{median, order};
@@ -108,41 +109,47 @@ pub(super) fn findings(entry: &Entry, quick: bool) -> Result<Findings, Ended> {
     progress.message("reference");
     let reference = Reference::new(system, &start, until)?;
     let agreement = reference.agreement(entry.h)?;
-    let untimed = |method, setting| -> Result<Point, Ended> {
-        let (state, evaluations) = Task { start: &start, end: until, method, setting }.reached(system)?;
+    let untimed = |task: &Task<'_>, begun| -> Result<Point, Ended> {
+        let (state, evaluations) = task.reached_from(system, begun)?;
         Ok(Point { error: reference.error(&state)?, evaluations, seconds: f64::INFINITY, median: f64::INFINITY })
     };
     let mut runs = Vec::with_capacity(all.len());
     for (method, setting) in all {
         progress.advance_by(1);
-        runs.push(TimedRun { method, setting, outcome: untimed(method, setting) });
+        let task = Task { start: &start, end: until, method, setting };
+        let begun = task.begun(system);
+        let outcome = match &begun {
+            Ok(begun) => untimed(&task, begun.as_ref().map(|run| run.copy())),
+            Err(error) => Err(Ended::Step(*error)),
+        };
+        let found = begun.ok().flatten().filter(|_| method.has_tolerance());
+        runs.push((TimedRun { method, setting, outcome }, found));
     }
     time(system, &start, until, &mut runs, rounds, &mut progress);
+    let runs = runs.into_iter().map(|(run, _)| run).collect();
     Ok(Findings { until, agreement, runs })
 }
 
-/// Times every completed run in rounds: a temporary disturbance of the machine then affects all runs alike. The search of
-/// the first step of a tolerance does not count.
+/// Times every completed run in rounds: a temporary disturbance of the machine then affects all runs alike. Runs of a
+/// tolerance go on from one that has found its first step.
 fn time(
     system: &dyn System,
     start: &PhasePoint,
     end: f64,
-    runs: &mut [TimedRun],
+    runs: &mut [(TimedRun, Option<Box<dyn Simulation>>)],
     rounds: u32,
     progress: &mut Progress,
 ) {
     let mut times = vec![Vec::new(); runs.len()];
-    let task = |run: &TimedRun| Task { start, end, method: run.method, setting: run.setting };
-    let begun = |run: &TimedRun| task(run).begun(system).ok().flatten().filter(|_| run.method.has_tolerance());
-    let begun: Vec<_> = runs.iter().map(begun).collect();
     for _ in 0..rounds {
-        for ((run, begun), times) in runs.iter().zip(&begun).zip(&mut times) {
+        for ((run, begun), times) in runs.iter().zip(&mut times) {
             progress.message(run.method.name);
             progress.advance_by(1);
             if run.outcome.is_ok() {
+                let task = Task { start, end, method: run.method, setting: run.setting };
                 let reached = || match begun {
-                    Some(begun) => task(run).reached_from(system, Some(begun.copy())),
-                    None => task(run).reached(system),
+                    Some(begun) => task.reached_from(system, Some(begun.copy())),
+                    None => task.reached(system),
                 };
                 // A first run without timing restores caches after another method.
                 core::hint::black_box(reached().is_ok());
@@ -152,7 +159,7 @@ fn time(
             }
         }
     }
-    for (run, times) in runs.iter_mut().zip(times) {
+    for ((run, _), times) in runs.iter_mut().zip(times) {
         if let Ok(point) = &mut run.outcome {
             point.seconds = times.iter().copied().fold(f64::INFINITY, f64::min);
             point.median = median(times).unwrap_or(f64::INFINITY);
