@@ -115,16 +115,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
         let erased = &ErasedSystem::of(system);
         let is_near = || distance([self.stages, &step.stages], self.stages, &weights(erased, self.node, &step)) <= NEAR;
         let is_proven = continues && is_near() || is_proven(erased, self, &step);
-        if is_proven {
-            return Ok(step);
-        }
-        let is_certain = |step: &Step<N, S>| step.convergence.iterations <= FEW || step.convergence.contraction <= FAST;
-        if follows_momenta::<_, f64, N, S>(erased)
-            && let Some(found) = lagging(erased, self, (1.0, &constant(system, self.node)?)).filter(is_certain)
-        {
-            return Ok(Step { pause: step.pause, ..found });
-        }
-        self.continued(system, instructions, Some(step), cache)
+        if is_proven { Ok(step) } else { self.continued(system, instructions, Some(step), cache) }
     }
 
     /// The step, if its fixed-point iteration came to its end, and no continuation is needed to prove it.
@@ -164,6 +155,13 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
     {
         let from = constant(system, self.node)?;
         let erased = ErasedSystem::of(system);
+        let is_certain = |step: &Step<N, S>| step.convergence.iterations <= FEW || step.convergence.contraction <= FAST;
+        // A step that its own iteration does not prove may be proven by this one, which is shorter than a continuation.
+        if let Some(step) = &taken
+            && let Some(found) = lagging(&erased, self, (1.0, &from)).filter(is_certain)
+        {
+            return Ok(Step { pause: step.pause, ..found });
+        }
         let weights = taken.as_ref().map_or([1.0; N], |step| weights(&erased, self.node, step));
         let steps = &mut StepsFrom { start: self, system, instructions, cache, from: &from, weights, taken };
         let too_long = |part: f64| StepError::TooLong { t: self.node.t, h: self.h, longest: (part * self.h).abs() };
