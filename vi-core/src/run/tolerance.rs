@@ -19,8 +19,9 @@ use num_traits::Float as _;
 /// The run then has a constant step. Its largest relative error over the first stretch is at most the tolerance, and a
 /// length that is longer by a third would exceed it. If steps stop existing before the tolerance is reached, the run
 /// uses half of the longest length that exists. The stretch lasts until the coordinates have turned back twice or more,
-/// at most 4096 steps, or 1024/p steps of order p if their lengths follow the forces. A symplectic method keeps its step. A motion that becomes faster later exceeds the tolerance, and
-/// [`Run::monitored`] reports it. The global error is larger: about the tolerance times the number of steps, or more.
+/// at most 4096 steps, or 1024/p steps of order p if their lengths follow the forces. A symplectic method keeps its step.
+/// A motion that becomes faster later exceeds the tolerance, and [`Run::monitored`] reports it. The global error is
+/// larger: about the tolerance times the number of steps, or more.
 ///
 /// [`Run::monitored`]: crate::Run::monitored
 #[derive(Clone, Copy, Debug, PartialEq)]
