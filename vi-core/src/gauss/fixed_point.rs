@@ -12,8 +12,8 @@
 //! The change from x to x' is the residual at x, the same x whose forces the step uses. The iteration does not stop at
 //! the first small change, but when the remaining error is negligible. An error of the stages with the same sign in
 //! every step would let the energy drift. Rounding hides that error in the change, so the iteration predicts it: each
-//! iteration multiplies it by the contraction, which is measured while changes exceed rounding. Stages of a tolerance have
-//! larger units: changes of 4 units, 64 of velocities, and a thousandth of one.
+//! iteration multiplies it by the contraction, which is measured while changes exceed rounding. Stages of a tolerance are
+//! measured in larger units than ulps, with the same bounds.
 
 use super::stages::{EXACT, Stages};
 use crate::error::StepError;
@@ -49,6 +49,10 @@ const COARSE: f64 = 0.0625 / f64::EPSILON;
 pub(crate) trait Equations<const N: usize, const S: usize> {
     /// Whether Newton iteration is available for slow convergence.
     fn has_another_way(&self) -> bool;
+    /// The accuracy to which the stages are solved, in ulps.
+    fn accuracy(&self) -> f64 {
+        EXACT
+    }
     /// The initial positions, from the guess of the step.
     fn start(&self) -> Stages<N, S>;
     /// Evaluates the equations at the positions x, and writes the resulting positions to y. `before` has the change of
@@ -185,12 +189,11 @@ impl Convergence {
 #[repr(align(64))]
 struct AtLine<T>(T);
 
-/// Iterates until the stages converge to an accuracy, in ulps, or stall. `before` is the outcome of the previous step.
+/// Iterates until the stages converge or stall. `before` is the outcome of the previous step.
 #[inline(always)]
 pub(crate) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
     equations: &mut E,
     before: &Convergence,
-    accuracy: f64,
 ) -> FixedPointResult<N, S> {
     let [x, y] = &mut [AtLine(equations.start()), AtLine([[0.0; S]; N])];
     let (AtLine(x), AtLine(y)) = (x, y);
@@ -202,6 +205,7 @@ pub(crate) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
     let mut least = f64::INFINITY;
     let mut stalls = 0;
     let mut is_last = false;
+    let accuracy = equations.accuracy();
     let are_given_up = loop {
         equations.iterate(x, y, &state);
         state.iterations += 1;

@@ -307,6 +307,11 @@ where
     }
 
     #[inline(always)]
+    fn accuracy(&self) -> f64 {
+        self.accuracy
+    }
+
+    #[inline(always)]
     fn start(&self) -> Stages<N, S> {
         self.positions()
     }

@@ -153,6 +153,11 @@ where
     }
 
     #[inline(always)]
+    fn accuracy(&self) -> f64 {
+        self.accuracy
+    }
+
+    #[inline(always)]
     fn start(&self) -> Stages<N, S> {
         let Tableau { second, ahead, .. } = const { &Tableau::<S>::VALUES };
         let mut x = [[0.0; S]; N];

@@ -63,14 +63,19 @@ pub struct StageSolution<const N: usize, const S: usize> {
 }
 
 impl<const N: usize, const S: usize> StageSolution<N, S> {
-    /// Whether fixed-point iteration solved the step of length h from a node to the rounding of its positions, and its
-    /// contraction or its stages prove the step.
+    /// Whether fixed-point iteration solved the step to its accuracy, and its contraction or its stages prove the step.
     #[inline(always)]
     pub(crate) fn is_step(&self, follows_momenta: bool, start: &Start<'_, N, S>) -> bool {
-        let StageIncrement { velocity, momentum } = &self.increment;
         let convergence = &self.iteration.convergence;
         let is_proven = if follows_momenta { are_smooth(&self.stages) } else { convergence.is_fast(start.accuracy) };
-        convergence.is_at_floor() && is_proven && start.node.stays_finite(start.h, velocity, momentum)
+        is_proven && self.is_solved(start)
+    }
+
+    /// Whether fixed-point iteration solved the step to its accuracy.
+    #[inline(always)]
+    fn is_solved(&self, start: &Start<'_, N, S>) -> bool {
+        let StageIncrement { velocity, momentum } = &self.increment;
+        self.iteration.convergence.is_at_floor() && start.node.stays_finite(start.h, velocity, momentum)
     }
 
     /// Whether the stages are finite and near a solution.
@@ -157,9 +162,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
     /// The step by an iteration that does not follow momenta. Its contraction may prove it.
     pub(super) fn without_momenta(&self, system: &ErasedSystem<'_, N>) -> Option<Step<N, S>> {
         let solved = self.in_scalars(&system.lagging(), None);
-        let StageIncrement { velocity, momentum } = &solved.increment;
-        let is_step = solved.iteration.convergence.is_at_floor() && self.node.stays_finite(self.h, velocity, momentum);
-        is_step.then(|| solved.step(self.h, self.pause))
+        solved.is_solved(self).then(|| solved.step(self.h, self.pause))
     }
 
     /// The stages with SIMD dispatch, if the system suits it.
@@ -452,7 +455,7 @@ fn finished<const N: usize, const S: usize>(
     mut equations: impl Equations<N, S>,
     start: &Start<'_, N, S>,
 ) -> StageSolution<N, S> {
-    let iteration = fixed_point::solve(&mut equations, start.before, start.accuracy);
+    let iteration = fixed_point::solve(&mut equations, start.before);
     StageSolution {
         increment: equations.increment(),
         stages: equations.guess(),

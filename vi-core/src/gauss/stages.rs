@@ -236,7 +236,8 @@ pub(crate) fn roundings<const N: usize, const S: usize>(
 /// The accuracy of stages that are solved to rounding, in ulps.
 pub(crate) const EXACT: f64 = 1.0;
 
-/// Larger units for stages that are solved to an accuracy: so many ulps of the largest entry of each row.
+/// The units of stages that are solved to an accuracy: this number of ulps of the largest entry of each row, or a
+/// rounding if that is larger.
 #[inline(always)]
 pub(crate) fn relaxed<const N: usize, const S: usize>(
     n: usize,
@@ -253,7 +254,7 @@ pub(crate) fn relaxed<const N: usize, const S: usize>(
     roundings
 }
 
-/// The same for positions: ulps of their distance from the node.
+/// The same for positions: this number of ulps of their distance from the node, or a rounding.
 #[inline(always)]
 pub(crate) fn relaxed_positions<const N: usize, const S: usize>(
     n: usize,

@@ -21,7 +21,7 @@ use super::linearization::LinearizationPoint;
 use super::newton::{Buffer, Newton};
 use super::points::ErasedSystem;
 use super::solve::lost_force;
-use super::stages::{EXACT, Stages, stage};
+use super::stages::{Stages, stage};
 use crate::error::StepError;
 use crate::motion::{Motion, TimeScale};
 use crate::node::Node;
@@ -203,7 +203,7 @@ where
 {
     let rates = last.guess::<FUSED>(dtau);
     let mut equations = Scaled::<T, Y, N, S, FUSED>::new(system, node, dtau, rates, newton);
-    let iteration = fixed_point::solve(&mut equations, &last.convergence, EXACT);
+    let iteration = fixed_point::solve(&mut equations, &last.convergence);
     TransformedStages {
         increment: equations.increment(),
         gains: equations.gains(),
