@@ -31,7 +31,6 @@ pub mod sine;
 pub use dual::{Dual, Slope, Slopes};
 pub use lane::Lane;
 pub use lanes::Lanes;
-pub(crate) use rounded::Bounded;
 pub use rounded::{Rounded, Running};
 pub use series::Series;
 

@@ -1,9 +1,12 @@
 //! Vectors of numbers with rigorous rounding-error bounds.
 
-pub(super) use crate::real::Bounded;
+use crate::real::Running;
 use crate::vector::worse;
 use alloc::vec::Vec;
 use nalgebra::SVector;
+
+/// A number with a bound that holds for all operands within their errors.
+pub(super) type Bounded = Running<true>;
 
 impl Bounded {
     /// This bound with a value that the same formula gave elsewhere.

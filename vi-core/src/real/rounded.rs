@@ -1,6 +1,6 @@
 //! Numbers that carry a rounding-error bound: running error analysis.
 //!
-//! A formula generic over [`Real`] returns its value, with [`Bounded`] the same bits as in `f64`, and a bound of its
+//! A formula generic over [`Real`] returns its value, with `Running<true>` the same bits as in `f64`, and a bound of its
 //! rounding error. With `z = x ∘ y`,
 //!
 //! ```text
@@ -10,7 +10,7 @@
 //! so that cancellation inside a formula stays in the bound: a residual below it is zero to rounding. Library functions
 //! are assumed accurate to an ulp.
 //!
-//! | | [`Rounded`], for steppers | [`Bounded`], for checks |
+//! | | [`Rounded`], for steppers | `Running<true>`, for checks |
 //! |---|---|---|
 //! | bound | of first order: slopes at the value | rigorous: the largest slopes within the errors of the operands |
 //! | kinks, jumps and limits | on the side of the value | as far as the values on both sides, if the errors reach both |
@@ -38,8 +38,6 @@ pub struct Running<const RIGOROUS: bool> {
 
 /// A number with a bound of first order.
 pub type Rounded = Running<false>;
-/// A number with a bound that holds for all operands within their errors.
-pub(crate) type Bounded = Running<true>;
 
 impl Rounded {
     /// The rounding-error bound, in units of half an ulp of 1.
@@ -354,7 +352,9 @@ impl<const RIGOROUS: bool> Real for Running<RIGOROUS> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Bounded, Number, Real};
+    use super::{Number, Real};
+
+    type Bounded = super::Running<true>;
 
     /// A unary function, in both number types.
     type Function = (&'static str, fn(f64) -> f64, fn(Bounded) -> Bounded);
