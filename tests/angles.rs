@@ -91,7 +91,7 @@ fn same_bits<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize>(run: Run<
             assert!((b.q[i] - a.q[i] - moved).abs() <= rounding, "step {step}: {a:?} {b:?}");
             let back = one.reduced()[i] + TAU * one.turns()[i] as f64;
             assert!((back - a.q[i]).abs() <= 4.0 * f64::EPSILON * a.q[i].abs(), "step {step}: {back} {a:?}");
-            assert!(!S::ANGLES[i] || one.reduced()[i].abs() <= PI, "step {step}");
+            assert!(!S::SPACES[i].is_angle() || one.reduced()[i].abs() <= PI, "step {step}");
         }
     }
     assert!((0..N).any(|i| one.turns()[i] != begun[i]), "{:?}", one.turns());

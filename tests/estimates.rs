@@ -129,8 +129,9 @@ fn a_step_from_a_tolerance_has_its_error() {
                 by_tolerance(start, Gauss::<4>, tolerance),
                 by_tolerance(start, EnergyPreserving, tolerance),
             ];
-            // Measured: 0.5 to 1.7 of it. After the first stretch the scales may still shrink.
-            let are_near = errors.iter().all(|error| *error > 0.3 * tolerance && *error < 2.0 * tolerance);
+            // Measured: 0.29 to 1.7 of it. The search accepts a length within 15 %, a factor of 3.5 of an error of order
+            // 9. After the first stretch the scales may still shrink.
+            let are_near = errors.iter().all(|error| *error > 0.2 * tolerance && *error < 2.0 * tolerance);
             assert!(are_near, "{} {tolerance:e}: {errors:?}", S::NAME);
         }
     }

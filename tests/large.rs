@@ -4,6 +4,7 @@ use std::thread;
 use vi_core::check::{self, Place};
 use vi_core::constrained::Extended;
 use vi_core::kind::{Bound, Form};
+use vi_core::lagrangian::Space;
 use vi_core::linear::{Matrix, Rectangular};
 use vi_core::motion::Motion;
 use vi_core::nalgebra::SMatrix;
@@ -237,7 +238,7 @@ where
     A: FixedStepping<N> + DiscreteLagrangian<N>,
     B: FixedStepping<N> + DiscreteLagrangian<N>,
 {
-    assert_eq!((A::ANGLES, A::CONSTANT_JACOBIAN), (B::ANGLES, B::CONSTANT_JACOBIAN));
+    assert_eq!((A::SPACES, A::CONSTANT_JACOBIAN), (B::SPACES, B::CONSTANT_JACOBIAN));
     let (mut sums, mut single) = (Worst::default(), Worst::default());
     for seed in 1..5_u32 {
         let t = 0.3 * f64::from(seed);
@@ -386,7 +387,7 @@ where
 #[test]
 fn angles_in_loops_are_angles_in_lines() {
     let (loops, lines) = (WheelsInLoops::default(), WheelsInLines::default());
-    assert_eq!(<WheelsInLoops as Lagrangian<6>>::ANGLES, [true; 6]);
+    assert_eq!(<WheelsInLoops as Lagrangian<6>>::SPACES, [Space::Circle; 6]);
     // Measured: 2.3 and 5.2, 2.9 and 3.5, 3.6e-15.
     compare_fixed(&By::new(loops, Own), &By::new(lines, Own), 4.0, [6.0, 7.0]);
     compare_fixed(&By::new(loops, Midpoint), &By::new(lines, Midpoint), 4.0, [6.0, 7.0]);

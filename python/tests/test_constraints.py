@@ -533,6 +533,13 @@ def test_matrices_and_velocities_of_rotations():
     for column, axis in enumerate(np.eye(3).tolist()):
         # Measured: 3.3e-16.
         assert np.abs(matrices[..., column] - sol[f"turn(R, {axis})"]).max() < 2e-15
+    assert (top.angles, top.rotations) == ((), ("R",)) and vi.Kepler.rotations == ()
+    rotation = pytest.importorskip("scipy.spatial.transform").Rotation
+    found = sol.as_rotation("R")
+    # Measured: 4.5e-16.
+    assert isinstance(found, rotation) and np.abs(found.as_matrix() - matrices).max() < 5e-15
+    with pytest.raises(ValueError, match='name one of the rotations, "R", not \'R\\[0\\]\''):
+        sol.as_rotation("R[0]")
     spin = np.einsum("kij,kj->ki", matrices, sol["rate(R)"])
     # Measured: 4.4e-15 and 4.4e-16.
     assert np.abs(spin - sol["spin(R)"]).max() < 5e-14

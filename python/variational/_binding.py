@@ -54,6 +54,10 @@ def class_of(kind: Any, module: str, metaclass: type = type, dropped: tuple[str,
         "_kind": kind,
         "_defaults": np.array([default for _, default, _ in kind.parameters]),
         "coordinates": coordinates,
+        "angles": _declared("angle", kind.spaces, coordinates),
+        "rotations": tuple(
+            name.removesuffix("[0]") for name in _declared("rotation", kind.spaces, coordinates) if name.endswith("[0]")
+        ),
         "constraints": tuple(spelled(name) for name in kind.constraints),
         "dropped": tuple(spelled(name) for name in dropped),
         "parameters": tuple(fields),
@@ -97,6 +101,11 @@ def _distinct(names: list[str]) -> tuple[str, ...]:
             name += "_"
         found.append(name)
     return tuple(found)
+
+
+def _declared(word: str, spaces: list[str], coordinates: tuple[str, ...]) -> tuple[str, ...]:
+    """The coordinates that a clause with this word declares."""
+    return tuple(name for name, space in zip(coordinates, spaces, strict=True) if space == word)
 
 
 def _documentation(

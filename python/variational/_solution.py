@@ -71,6 +71,25 @@ class ByName:
         points = self.system._points(self.t, self.q, self._velocities_from_here())
         return fixed(self.system._evaluated(name, *points, values))
 
+    def as_rotation(self, name: str) -> Any:
+        """The orientations of a body as a `scipy.spatial.transform.Rotation`, one for each row. They turn vectors of the
+        body into space.
+
+        >>> angles = sol.as_rotation("R").as_euler("ZXZ")
+
+        Needs scipy. Raises ValueError if the system has no rotation of this name; its `rotations` are their names.
+        """
+        try:
+            from scipy.spatial.transform import Rotation
+        except ImportError:
+            raise ImportError("as_rotation needs scipy: pip install scipy") from None
+        known = self.system.rotations
+        if name not in known:
+            names = ", ".join(f'"{of}"' for of in known)
+            raise ValueError(f"name one of the rotations, {names}, not {name!r}" if known else "there is no rotation")
+        # The scalar is first here, and last in scipy.
+        return Rotation.from_quat(np.roll(self[name], -1, axis=-1))
+
     def _velocities_from_here(self) -> Array:
         """The velocities from each row on: where a parameter changes, that of the momenta by its new value. `v` has
         those before the change."""

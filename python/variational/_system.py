@@ -157,6 +157,10 @@ class System(metaclass=SystemType):
     _compiled: ClassVar[Future[type[System]] | None] = None
     coordinates: ClassVar[tuple[str, ...]] = ()
     """Names of the coordinates."""
+    angles: ClassVar[tuple[str, ...]] = ()
+    """Names of those coordinates that are an `angle`."""
+    rotations: ClassVar[tuple[str, ...]] = ()
+    """Names of the rotations, with four coordinates each; see `as_rotation` of a solution."""
     constraints: ClassVar[tuple[str, ...]] = ()
     """Names of the constraints, holonomic ones first."""
     dropped: ClassVar[tuple[str, ...]] = ()

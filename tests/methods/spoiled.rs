@@ -3,6 +3,7 @@
 use super::Node;
 use std::borrow::Cow;
 use vi_core::StepError;
+use vi_core::lagrangian::Space;
 use vi_core::run::ErrorEstimate;
 use vi_erased::control::{Control, Linear};
 use vi_erased::plan::Built;
@@ -76,6 +77,7 @@ impl System for Spoiled<dyn System> {
     forward!(System);
     forward! {
         fn coordinates(&self) -> Vec<&'static str>;
+        fn spaces(&self) -> Vec<Space>;
         fn evaluate(&self, of: Quantity, points: [&[f64]; 3], out: &mut Vec<f64>) -> Result<(), StepError>;
         fn project(&self, at: &PhasePoint) -> Result<OnConstraints, StepError>;
         fn assemble(&self, at: &PhasePoint) -> Result<OnConstraints, StepError>;

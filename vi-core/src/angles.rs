@@ -39,7 +39,7 @@ pub type Turns<const N: usize> = SVector<i64, N>;
 pub const fn has_angles<S: Lagrangian<N, T>, const N: usize, T: Scalar>() -> bool {
     let mut index = 0;
     while index < N {
-        if S::ANGLES[index] {
+        if S::SPACES[index].is_angle() {
             return true;
         }
         index += 1;
@@ -50,9 +50,9 @@ pub const fn has_angles<S: Lagrangian<N, T>, const N: usize, T: Scalar>() -> boo
 /// Whether an angle has to be reduced before the next step.
 #[inline(always)]
 pub fn are_far<S: Lagrangian<N, T>, const N: usize, T: Scalar>(system: &S, q: &SVector<T, N>) -> bool {
-    let (mut are_far, angles) = (false, system.angles());
+    let (mut are_far, spaces) = (false, system.spaces());
     for i in 0..N {
-        are_far |= angles[i] && q[i].abs() > T::real(FAR);
+        are_far |= spaces[i].is_angle() && q[i].abs() > T::real(FAR);
     }
     are_far
 }
@@ -70,7 +70,7 @@ pub fn reduced<S: Lagrangian<N, T>, const N: usize, T: Scalar>(
     system: &S,
     (mut q, mut q_low, mut turns): Reduced<N, T>,
 ) -> Result<Reduced<N, T>, StepError> {
-    for i in (0..N).filter(|i| system.angles()[*i]) {
+    for i in (0..N).filter(|i| system.spaces()[*i].is_angle()) {
         if q[i].abs() <= T::real(FAR) {
             continue;
         }
@@ -137,7 +137,7 @@ pub(crate) fn normalized<S: Lagrangian<N, T>, const N: usize, T: Scalar>(
     turns: &Turns<N>,
 ) -> (SVector<T, N>, Turns<N>) {
     let (mut q, mut turns) = (node.q, *turns);
-    for i in (0..N).filter(|i| system.angles()[*i]) {
+    for i in (0..N).filter(|i| system.spaces()[*i].is_angle()) {
         if let Some((k, [high, _])) = nearest(q[i].to_f64(), node.q_low[i].to_f64()) {
             (q[i], turns[i]) = (T::real(high), turns[i] + k);
         }
@@ -155,7 +155,7 @@ pub(crate) fn check<S: Lagrangian<N, T>, const N: usize, T: Scalar>(
     turns: &Turns<N>,
 ) -> Result<(), StepError> {
     for i in 0..N {
-        if !system.angles()[i] && turns[i] != 0 {
+        if !system.spaces()[i].is_angle() && turns[i] != 0 {
             return Err(StepError::InvalidInput {
                 input: "the turns of a coordinate that is no angle",
                 allowed: "zero",
@@ -167,7 +167,7 @@ pub(crate) fn check<S: Lagrangian<N, T>, const N: usize, T: Scalar>(
         }
         let angle = q[i].to_f64();
         // The method reports an angle that is not finite.
-        if system.angles()[i] && angle.is_finite() && nearest(angle, 0.0).is_none() {
+        if system.spaces()[i].is_angle() && angle.is_finite() && nearest(angle, 0.0).is_none() {
             return Err(too_far(angle));
         }
     }

@@ -29,7 +29,7 @@ macro_rules! forward {
             AUTONOMOUS is_autonomous: bool,
             FORCED is_forced: bool,
             CYCLIC cyclic: [bool; $n],
-            ANGLES angles: [bool; $n],
+            SPACES spaces: [$crate::lagrangian::Space; $n],
             PARAMETERS parameters: &'static [&'static str],
             INPUTS inputs: &'static [usize],
             MONOTONE_TABLE monotone_table: Option<&'static str>,

@@ -4,6 +4,26 @@ use crate::error::StepError;
 use crate::real::Real;
 use nalgebra::SVector;
 
+/// What a coordinate is: configurations are the product of lines, circles and rotations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Space {
+    /// A number, declared by `coord`.
+    Line,
+    /// An angle, declared by `angle`: L and f are 2π-periodic in it, and a run reduces it.
+    Circle,
+    /// A component of a unit quaternion, declared by `rotation`: this one of four coordinates in a row, scalar first.
+    Rotation(usize),
+}
+
+impl Space {
+    /// Whether the coordinate is an angle.
+    #[must_use]
+    #[inline(always)]
+    pub const fn is_angle(self) -> bool {
+        matches!(self, Self::Circle)
+    }
+}
+
 /// The continuous system: Lagrangian `L(t, q, v)` and generalized force `f(t, q, v)`.
 pub trait Lagrangian<const N: usize, T: Real = f64> {
     /// Name of the system, as declared.
@@ -16,8 +36,8 @@ pub trait Lagrangian<const N: usize, T: Real = f64> {
     const FORCED: bool;
     /// For each coordinate, whether it appears neither in L nor has a force. Its momentum is then conserved.
     const CYCLIC: [bool; N];
-    /// For each coordinate, whether it is declared as an `angle`: L and f are 2π-periodic in it, and a run reduces it.
-    const ANGLES: [bool; N] = [false; N];
+    /// What each coordinate is, as declared.
+    const SPACES: [Space; N] = [Space::Line; N];
     /// Names of the parameters, as declared.
     const PARAMETERS: &'static [&'static str] = &[];
     /// Indices in [`Lagrangian::PARAMETERS`] of the inputs, the parameters that `input` declares for a controller to
@@ -61,10 +81,10 @@ pub trait Lagrangian<const N: usize, T: Real = f64> {
     fn cyclic(&self) -> [bool; N] {
         Self::CYCLIC
     }
-    /// [`Lagrangian::ANGLES`].
+    /// [`Lagrangian::SPACES`].
     #[inline(always)]
-    fn angles(&self) -> [bool; N] {
-        Self::ANGLES
+    fn spaces(&self) -> [Space; N] {
+        Self::SPACES
     }
     /// [`Lagrangian::PARAMETERS`].
     #[inline(always)]

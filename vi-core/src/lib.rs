@@ -116,6 +116,7 @@ mod newton;
 pub mod node;
 mod predictor;
 pub mod real;
+mod rotation;
 pub mod rules;
 pub mod run;
 mod solve;

@@ -28,6 +28,7 @@ use std::borrow::Cow;
 use vi_core::StepError;
 #[cfg(feature = "derivatives")]
 use vi_core::control::Equilibrium;
+use vi_core::lagrangian::Space;
 #[cfg(feature = "derivatives")]
 use vi_core::nalgebra::{DMatrix, SVector};
 use vi_core::run::ErrorEstimate;
@@ -105,6 +106,12 @@ impl System for Declared<dyn System> {
         let mut names = self.of.coordinates();
         names.truncate(self.size);
         names
+    }
+
+    fn spaces(&self) -> Vec<Space> {
+        let mut spaces = self.of.spaces();
+        spaces.truncate(self.size);
+        spaces
     }
 
     fn copy(&self) -> Box<dyn System> {

@@ -33,7 +33,7 @@ use vi_core::control::Dynamics as _;
 use vi_core::gauss::step_density;
 #[cfg(feature = "studies")]
 use vi_core::kind::Kind;
-use vi_core::lagrangian::Described;
+use vi_core::lagrangian::{Described, Space};
 use vi_core::{Lagrangian as _, SVector, State, StepError};
 
 /// A function of a system.
@@ -94,6 +94,8 @@ pub trait System: Send + Sync {
     fn definition(&self) -> &'static str;
     /// Names of the coordinates.
     fn coordinates(&self) -> Vec<&'static str>;
+    /// What each coordinate is.
+    fn spaces(&self) -> Vec<Space>;
     /// Names of the constraints, holonomic ones first; none for a system without.
     fn constraints(&self) -> &'static [&'static str];
     /// Names and values of the parameters.
@@ -339,6 +341,10 @@ impl<S: Runnable<N> + Described, const N: usize> System for Typed<S, N> {
 
     fn coordinates(&self) -> Vec<&'static str> {
         self.system.coordinates().to_vec()
+    }
+
+    fn spaces(&self) -> Vec<Space> {
+        self.system.spaces().to_vec()
     }
 
     fn constraints(&self) -> &'static [&'static str] {

@@ -1,9 +1,11 @@
 //! Systems with constraints move as the same mechanics does by independent equations: in angles, in closed form, by
 //! published numbers.
 
-use vi_core::SVector;
+use vi_core::lagrangian::Space;
+use vi_core::nalgebra::Vector3;
 use vi_core::prelude::*;
 use vi_core::stepping::Convertible;
+use vi_core::{Lagrangian as _, SVector};
 use vi_systems::{
     AndrewsSqueezer, ChaplyginSleigh, DoublePendulum, DoubleRodPendulum, FourBar, HeavyTop, Pendulum, RodChain,
     RodPendulum, RollingBall, RollingDisk, SliderCrank,
@@ -202,6 +204,28 @@ fn a_top_moves_as_in_eulers_angles() {
     println!("{error:e}");
     // Measured: 1.6e-14.
     assert!(error < 1e-13, "{error:e}");
+}
+
+#[test]
+fn a_system_knows_the_orientations_of_its_bodies() {
+    let spaces = RollingBall::default().spaces();
+    let rotation = [0, 1, 2, 3].map(Space::Rotation);
+    assert_eq!(spaces[..2], [Space::Line; 2]);
+    assert_eq!(spaces[2..], rotation);
+    assert_eq!(HeavyTop::<f64>::SPACES, rotation);
+    let state = State { t: 0.0, q: [3.0, -4.0, 0.48, 0.6, 0.0, 0.64].into(), p: SVector::zeros() };
+    let bodies: Vec<_> = state.orientations(&RollingBall::default()).collect();
+    let [body] = bodies[..] else { panic!("{bodies:?}") };
+    // By Rodrigues' formula: the angle φ about the unit vector n.
+    let (φ, n) = (2.0 * 0.48_f64.acos(), [0.6, 0.0, 0.64].map(|entry| entry / (1.0 - 0.48_f64.powi(2)).sqrt()));
+    let (n, r) = (Vector3::from(n), Vector3::new(0.3, -1.1, 0.7));
+    let wanted = r * φ.cos() + n.cross(&r) * φ.sin() + n * (n.dot(&r) * (1.0 - φ.cos()));
+    let error = (body * r - wanted).amax();
+    println!("{error:e}");
+    // Measured: 2.2e-16.
+    assert!(error < 2e-15, "{error:e}");
+    let of_angles = State { t: 0.0, q: SVector::repeat(0.1), p: SVector::zeros() };
+    assert_eq!(of_angles.orientations(&ChaplyginSleigh::default()).count(), 0);
 }
 
 #[test]

@@ -5,6 +5,7 @@ use crate::tables::Tables;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::OnceLock;
+use vi_core::lagrangian::Space;
 use vi_core::linear::{AnyForm, Block};
 use vi_core::table::AnyTable;
 use vi_dispatch::Instructions;
@@ -138,7 +139,7 @@ pub(crate) struct Code {
     /// The values of the parameters by default.
     pub(crate) defaults: Box<[f64]>,
     pub(crate) inputs: &'static [usize],
-    pub(crate) angles: Box<[bool]>,
+    pub(crate) spaces: Box<[Space]>,
     pub(crate) cyclic: Box<[bool]>,
     /// The state of its checks.
     pub(crate) start: Option<Start>,

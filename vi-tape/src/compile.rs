@@ -23,12 +23,13 @@ use std::sync::OnceLock;
 use vi_codegen::findings::{self, CLOSED, Elimination, Pattern};
 use vi_codegen::inspect::{report, source};
 use vi_codegen::messages::{FirstOrder, Message, error};
-use vi_codegen::model::{CheckState, Coordinate, Model, Parameter};
+use vi_codegen::model::{self, CheckState, Coordinate, Model, Parameter};
 use vi_codegen::program::{Function, FunctionId, Operation, OperationId, Output};
 use vi_codegen::rules::NamedRule;
 use vi_codegen::symbol::{Symbol, Variable};
 use vi_codegen::syntax::Discretization;
 use vi_codegen::{Derived, derive_own, sizes, syntax};
+use vi_core::lagrangian::Space;
 use vi_core::linear::{AnyForm, Block};
 use vi_dispatch::Instructions;
 use vi_expr::{Expr, Node};
@@ -153,7 +154,7 @@ fn of_derived(
         parameters_about: names(model, Parameter::about),
         defaults: model.parameters.iter().map(|of| of.default).collect(),
         inputs: inputs.map(|(index, _)| index).collect::<Vec<_>>().leak(),
-        angles: model.coordinates.iter().map(|of| of.is_angle).collect(),
+        spaces: model.coordinates.iter().map(space).collect(),
         cyclic: continuous.cyclic.clone().into(),
         start: model.check_state.as_ref().map(|state| start(state, parameters)),
         watched: watched(of),
@@ -191,6 +192,15 @@ fn called(of: &Derived, tables: &Tables, call: Expr, arguments: usize) -> Option
     let Node::Opaque(function, _) = of.pool.node(call) else { return None };
     let text = of.pool.render_within(CHARACTERS, call, &|symbol| of.system.spell(&of.model, symbol));
     Some(Call { text: text.leak(), table: &tables.all[usize::from(tables.place(&function.name)?)], arguments })
+}
+
+/// What a coordinate is.
+fn space(of: &Coordinate) -> Space {
+    match (of.space, of.indices.last()) {
+        (model::Space::Circle, _) => Space::Circle,
+        (model::Space::Rotation, Some(component)) => Space::Rotation(*component),
+        _ => Space::Line,
+    }
 }
 
 /// The state of the checks, for these parameters.

@@ -5,7 +5,7 @@ use crate::kinds::{Interpreted, matrix};
 use crate::lines::{Lines, Results};
 use core::array;
 use vi_core::kind::{Free, Gradients, Multipliers, ReactionMatrix};
-use vi_core::lagrangian::{Described, Flow, Parameters, Undefined};
+use vi_core::lagrangian::{Described, Flow, Parameters, Space, Undefined};
 use vi_core::linear::{AnyForm, AnyMatrix, Block};
 use vi_core::motion::{Motion, Point, PointDerivatives, ScaledPoint, Separable, Sides};
 use vi_core::nalgebra::SMatrix;
@@ -138,7 +138,7 @@ impl<const N: usize, K: Interpreted, T: Real> Lagrangian<N, T> for Tape<N, K, T>
     const AUTONOMOUS: bool = false;
     const FORCED: bool = true;
     const CYCLIC: [bool; N] = [false; N];
-    const ANGLES: [bool; N] = [true; N];
+    const SPACES: [Space; N] = [Space::Circle; N];
     const INTERPRETED: bool = true;
 
     fn name(&self) -> &'static str {
@@ -162,8 +162,8 @@ impl<const N: usize, K: Interpreted, T: Real> Lagrangian<N, T> for Tape<N, K, T>
     }
 
     #[inline]
-    fn angles(&self) -> [bool; N] {
-        array::from_fn(|i| self.code.angles.get(i).copied().unwrap_or_default())
+    fn spaces(&self) -> [Space; N] {
+        array::from_fn(|i| self.code.spaces.get(i).copied().unwrap_or(Space::Line))
     }
 
     fn parameters(&self) -> &'static [&'static str] {

@@ -83,7 +83,7 @@ fn every_method_takes_the_steps_of_the_compiled_system() {
         let tape = vi_tape::System::parse(system.definition()).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(tape.name(), system.name());
         assert_eq!(tape.about(), system.about());
-        assert_eq!(tape.coordinates(), system.coordinates());
+        assert_eq!((tape.coordinates(), tape.spaces()), (system.coordinates(), system.spaces()));
         assert_eq!(tape.parameters(), system.parameters());
         assert_eq!(tape.parameters_about(), system.parameters_about());
         assert_eq!(tape.conserves_energy(), system.conserves_energy());

@@ -9,6 +9,7 @@ use crate::run::Run;
 use crate::transcription::Transcription;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
+use vi_core::lagrangian::Space;
 use vi_erased::System;
 use vi_erased::control::Rest;
 use vi_erased::plan::{Method, Named as _, PhasePoint, Plan};
@@ -66,6 +67,17 @@ impl Kind {
     #[getter]
     fn coordinates(&self) -> Vec<&'static str> {
         self.of.coordinates()
+    }
+
+    /// What each coordinate is: "coord", "angle", or "rotation".
+    #[getter]
+    fn spaces(&self) -> Vec<&'static str> {
+        let word = |space| match space {
+            Space::Line => "coord",
+            Space::Circle => "angle",
+            Space::Rotation(_) => "rotation",
+        };
+        self.of.spaces().into_iter().map(word).collect()
     }
 
     #[getter]

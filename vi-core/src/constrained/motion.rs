@@ -211,7 +211,7 @@ fn near<S: Motion<N, T>, const N: usize, T: Real>(
     let [_, positions] = spread(&point.mass, q, &SVector::zeros());
     let [_, velocities] = spread(&point.mass, v, &point.momentum);
     // An angle has the size of a radian, and so have coordinates that are all zero.
-    let is_unit = |i: usize| system.angles()[i] || q.iter().all(|entry| entry.to_f64() == 0.0);
+    let is_unit = |i: usize| system.spaces()[i].is_angle() || q.iter().all(|entry| entry.to_f64() == 0.0);
     let sizes = SVector::<T, N>::from_fn(|i, _| {
         let size = q[i].abs() + positions[i];
         if is_unit(i) { size + T::one() } else { size }

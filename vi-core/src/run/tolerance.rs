@@ -41,8 +41,9 @@ pub trait Length<T: Scalar> {
     /// The step length of a run from a start by a method.
     ///
     /// # Errors
-    /// [`StepError::Tolerance`] if no length meets the tolerance, or if nothing moves, with an estimate of zero; [`StepError::InvalidInput`] for a tolerance below a
-    /// rounding (2.2e-16 in `f64`) or not below 1; the error of the shortest steps tried.
+    /// [`StepError::Tolerance`] if no length meets the tolerance, or if nothing moves, with an estimate of zero;
+    /// [`StepError::InvalidInput`] for a tolerance below a rounding (2.2e-16 in `f64`) or not below 1; the error of the
+    /// shortest steps tried.
     fn length<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize>(
         self,
         start: &Start<S, N, T>,
@@ -222,7 +223,7 @@ fn time_scale<S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar>(start: &Sta
     for i in 0..N {
         let [q, v, a] = [state.q[i], v[i], a[i]].map(|entry| entry.to_f64().abs());
         // Whole turns of an angle do not count as its size.
-        let q = if system.angles()[i] { q.min(PI) } else { q };
+        let q = if system.spaces()[i].is_angle() { q.min(PI) } else { q };
         let scales = [q / v, v / a, (q / a).sqrt()];
         let scale = scales.into_iter().filter(|scale| scale.is_normal()).fold(0.0, f64::max);
         if scale > 0.0 {

@@ -20,7 +20,7 @@ pub use elimination::Block;
 pub use pattern::Pattern;
 
 use crate::discrete::DiscreteSystem;
-use crate::model::{Model, Smoothness};
+use crate::model::{Model, Smoothness, Space};
 use crate::program::{Function, FunctionId, Operation, OperationId, Output, Program};
 use crate::symbol::{Symbol, Variable};
 use std::collections::BTreeSet;
@@ -164,7 +164,7 @@ pub fn findings(model: &Model, system: &DiscreteSystem, program: &Program) -> Fi
         autonomous: system.continuous.autonomous,
         forced: model.forced,
         cyclic: cyclic.collect(),
-        angles: (0..model.dimension()).filter(|index| model.coordinates[*index].is_angle).collect(),
+        angles: (0..model.dimension()).filter(|index| model.coordinates[*index].space == Space::Circle).collect(),
         separable: momentum.is_some_and(|function| inputs(function, function.results.entries()).iter().all(velocities)),
         linear: (0..model.without_velocity.len()).filter(|index| !model.without_velocity[*index]).collect(),
         canonical_split: splits_canonically(&model.without_velocity, program),

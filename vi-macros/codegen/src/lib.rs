@@ -41,7 +41,7 @@ use model::{Model, check};
 use proc_macro2::TokenStream;
 use rules::NamedRule;
 use symbol::Symbol;
-use syntax::{System, parse};
+use syntax::{Space, System, parse};
 use vi_expr::Pool;
 
 /// A compiled system: straight lines, or loops if it is large and its terms repeat.
@@ -78,7 +78,7 @@ impl Compiled {
         };
         // Elimination in lines uses that the constraint of a rotation contains four numbers: five bodies take 85 µs a
         // step, not 125.
-        let has_rotations = system.coordinates.iter().any(|coordinate| coordinate.is_rotation);
+        let has_rotations = system.coordinates.iter().any(|coordinate| coordinate.space == Space::Rotation);
         let is_large = |loops: &Loops| {
             is_requested || !has_rotations && loops.indexed.operations() > limits::LARGE && loops.indexed.is_dense()
         };
@@ -201,7 +201,7 @@ pub fn derive(system: &System) -> syn::Result<Derivations> {
 /// # Errors
 /// All errors of the check, if the numbers depend on it.
 pub fn sizes(system: &System) -> syn::Result<[usize; 2]> {
-    let is_one = |of: &syntax::Coordinate| of.lengths.is_empty() && !of.is_rotation;
+    let is_one = |of: &syntax::Coordinate| of.lengths.is_empty() && of.space != Space::Rotation;
     if system.coordinates.iter().all(is_one) && system.all(syntax::Defining::Constraint).is_empty() {
         return Ok([system.coordinates.len(), 0]);
     }

@@ -37,12 +37,18 @@ fn not_periodic(summand: &str) {
     );
 }
 
+/// The constant that says what coordinates are.
+fn spaces(of: &[&str]) -> String {
+    let each: Vec<String> = of.iter().map(|space| format!(":: vi_core :: lagrangian :: Space :: {space}")).collect();
+    format!("const SPACES : [:: vi_core :: lagrangian :: Space ; {}usize] = [{}]", of.len(), each.join(" , "))
+}
+
 /// One case: a summand of L that is periodic.
 fn periodic(summand: &str) {
     let body =
         format!("param k = 1, n = 2; angle θ, φ; coord x; L = k * (dot(θ)^2 + dot(φ)^2 + dot(x)^2) - n * {summand};");
     let code = emitted(&body).unwrap_or_else(|found| panic!("{body}\n{found:#?}"));
-    assert!(code.contains("const ANGLES : [bool ; 3usize] = [true , true , false]"), "{body}");
+    assert!(code.contains(&spaces(&["Circle", "Circle", "Line"])), "{body}");
 }
 
 #[test]
@@ -133,7 +139,7 @@ fn forces_dissipation_and_time_scale_are_periodic_too() {
     assert!(emitted(&format!("{turning} torque R = [sin(θ), 0, 0];")).is_ok());
     let right = "param T = 1; angle q[3]; L = sum(i in 0..3, dot(q[i])^2) + cos(q[0] - q[1]); force q[i in 0..3] = T - sin(q[i]); \
                  dissipation = (2 + cos(q[0])) * dot(q[0])^2; time_scale = 2 + cos(q[1]);";
-    assert!(emitted(right).is_ok_and(|code| code.contains("[true , true , true]")));
+    assert!(emitted(right).is_ok_and(|code| code.contains(&spaces(&["Circle"; 3]))));
     // Every wrong clause has its message.
     let both = emitted("angle θ; L = dot(θ)^2 / 2 - θ; force θ = -θ;").expect_err("two clauses");
     assert_eq!(both.len(), 2, "{both:#?}");
@@ -158,7 +164,7 @@ fn couplings_with_rational_ratios_are_periodic() {
         "θ",
     ] {
         let code = emitted(&system(gear)).unwrap_or_else(|found| panic!("{gear}\n{found:#?}"));
-        assert!(code.contains("const ANGLES : [bool ; 3usize] = [true , true , false]"), "{gear}");
+        assert!(code.contains(&spaces(&["Circle", "Circle", "Line"])), "{gear}");
     }
     let message =
         "the constraint `gear` is not periodic in the angle `θ`: it changes when `θ` makes a turn of 2π\nhelp: ";
@@ -182,7 +188,7 @@ fn an_angle_is_a_coordinate() {
     let code = emitted("coord x; angle θ; coord q[2]; L = dot(x)^2 + dot(θ)^2 + dot(q[0])^2 + dot(q[1])^2;");
     let code = code.expect("a correct system");
     assert!(code.contains("[\"x\" , \"θ\" , \"q[0]\" , \"q[1]\"]"), "{code}");
-    assert!(code.contains("[false , true , false , false]"), "{code}");
+    assert!(code.contains(&spaces(&["Line", "Circle", "Line", "Line"])), "{code}");
     assert!(code.contains("Angles modulo 2π: `θ`"), "{code}");
     case("angle θ «=» 1; L = dot(θ)^2;", "a coordinate is declared without a value");
     case("coord θ; angle «θ»; L = dot(θ)^2;", "the name `θ` is declared twice");
@@ -196,13 +202,13 @@ fn except_for_the_flag_the_code_is_that_of_a_coordinate() {
     let body = "param g = 9.81; angle θ; L = dot(θ)^2 / 2 + g * cos(θ); discretize midpoint;";
     let [of_angle, of_coordinate] = [body.to_owned(), body.replace("angle", "coord")].map(|body| emitted(&body));
     let (of_angle, of_coordinate) = (of_angle.expect("an angle"), of_coordinate.expect("a coordinate"));
-    assert!(!of_coordinate.contains("ANGLES") && !of_coordinate.contains("Angles"));
-    let without = of_angle.replace("const ANGLES : [bool ; 1usize] = [true] ; ", "");
+    assert!(!of_coordinate.contains("SPACES") && !of_coordinate.contains("Angles"));
+    let without = of_angle.replace(&format!("{} ; ", spaces(&["Circle"])), "");
     let line = |code: &str| {
         let lines = code.split("# [doc").filter(|part| !part.contains("Angles modulo"));
         lines.map(|part| part.split("DEFINITION").next().unwrap_or(part).to_owned()).collect::<Vec<_>>()
     };
-    assert!(of_angle.contains("ANGLES"));
+    assert!(of_angle.contains("SPACES"));
     assert_eq!(line(&without), line(&of_coordinate));
 }
 
@@ -225,6 +231,6 @@ fn written_rules_move_with_angles() {
         "Ld = h * L(t0, q0, (q1 - q0) / h) + h^3 * q0[1] * q1[1];",
     ] {
         let code = emitted(&system(rule)).unwrap_or_else(|found| panic!("{rule}\n{found:#?}"));
-        assert!(code.contains("const ANGLES : [bool ; 2usize] = [true , false]"), "{rule}");
+        assert!(code.contains(&spaces(&["Circle", "Line"])), "{rule}");
     }
 }

@@ -3,7 +3,7 @@
 use crate::families::{bodies, links};
 use vi_codegen::Compiled;
 use vi_codegen::indexed::{Indexed, Nest};
-use vi_codegen::syntax::parse;
+use vi_codegen::syntax::{Space, parse};
 
 /// Links by their angles alone: the factors of its terms differ.
 fn pendulum(count: usize) -> String {
@@ -150,7 +150,7 @@ fn each_rule_and_angles_are_in_loops() {
     assert_eq!(rules(&joints(20)), ["trapezoidal", "midpoint"]);
     assert_eq!(rules(&links(20).replace("discretize midpoint", "discretize gauss, trapezoidal")), ["trapezoidal"]);
     // An angle is reduced although no entry of `a` has a period.
-    assert!(large(&joints(20)).model.coordinates.iter().all(|of| of.is_angle));
+    assert!(large(&joints(20)).model.coordinates.iter().all(|of| of.space == Space::Circle));
     let message = |text: &str| {
         let system = parse::system(text.parse().expect("tokens")).expect("a system");
         Compiled::of(&system).err().map(|error| error.to_string()).unwrap_or_default()

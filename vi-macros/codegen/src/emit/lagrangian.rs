@@ -7,7 +7,7 @@ use super::formula::item_name;
 use super::matrix::matrix;
 use super::state_function::{flow_by, number, vector, vector_of};
 use crate::findings::Pattern;
-use crate::model::{Coordinate, Model, Parameter};
+use crate::model::{Coordinate, Model, Parameter, Space};
 use crate::program::{FunctionId, Output};
 use crate::symbol::Symbol;
 use proc_macro2::{Literal, TokenStream};
@@ -55,7 +55,7 @@ pub(super) fn implementation(model: &Model, properties: Properties, functions: &
     let Properties { autonomous, cyclic, monotone } = properties;
     let (name, dimension) = (&model.name, Literal::usize_unsuffixed(model.dimension()));
     let (text, coordinates) = (name.to_string(), model.coordinates.iter().map(Coordinate::text));
-    let (forced, angles, inputs) = (model.forced, angles(model), inputs(model));
+    let (forced, spaces, inputs) = (model.forced, spaces(model), inputs(model));
     let parameters = model.parameters.iter().map(Parameter::place);
     let names = model.parameters.iter().map(Parameter::text);
     let monotone = monotone.map(|name| {
@@ -72,7 +72,7 @@ pub(super) fn implementation(model: &Model, properties: Properties, functions: &
             const AUTONOMOUS: bool = #autonomous;
             const FORCED: bool = #forced;
             const CYCLIC: [bool; #dimension] = [#(#cyclic),*];
-            #angles
+            #spaces
             const PARAMETERS: &'static [&'static str] = &[#(#names),*];
             #inputs
             #monotone
@@ -94,11 +94,19 @@ fn inputs(model: &Model) -> Option<TokenStream> {
     (!inputs.is_empty()).then(|| quote!(const INPUTS: &'static [::core::primitive::usize] = &[#(#inputs),*];))
 }
 
-/// The constant that marks angles, if there are any.
-fn angles(model: &Model) -> TokenStream {
-    let (dimension, angles) = (model.dimension(), model.coordinates.iter().map(|coordinate| coordinate.is_angle));
-    let item = quote!(const ANGLES: [bool; #dimension] = [#(#angles),*];);
-    if model.coordinates.iter().any(|coordinate| coordinate.is_angle) { item } else { TokenStream::new() }
+/// The constant that says what coordinates are, if not all are numbers.
+fn spaces(model: &Model) -> Option<TokenStream> {
+    let space = |of: &Coordinate| match (of.space, of.indices.last()) {
+        (Space::Circle, _) => quote!(::vi_core::lagrangian::Space::Circle),
+        (Space::Rotation, Some(component)) => {
+            let component = Literal::usize_unsuffixed(*component);
+            quote!(::vi_core::lagrangian::Space::Rotation(#component))
+        }
+        _ => quote!(::vi_core::lagrangian::Space::Line),
+    };
+    let (dimension, spaces) = (model.dimension(), model.coordinates.iter().map(space));
+    let are_lines = model.coordinates.iter().all(|coordinate| coordinate.space == Space::Line);
+    (!are_lines).then(|| quote!(const SPACES: [::vi_core::lagrangian::Space; #dimension] = [#(#spaces),*];))
 }
 
 impl Source<'_> {

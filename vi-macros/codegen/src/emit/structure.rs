@@ -4,7 +4,7 @@
 use super::formula::number;
 use super::{Source, Steps, conditions, limit};
 use crate::limits::{COORDINATES, PARAMETERS};
-use crate::model::{COMPONENTS, Model, Parameter};
+use crate::model::{COMPONENTS, Model, Parameter, Space};
 use crate::rules::{GAUSS, NamedRule, RULES};
 use crate::syntax::{self, Discretization, Expression, Kind, System};
 use num_traits::ToPrimitive;
@@ -333,7 +333,7 @@ fn dimension(system: &System) -> Option<Literal> {
     let lengths = system.coordinates.iter().map(|coordinate| {
         let lengths = coordinate.lengths.iter().map(|length| plain_length(system, length));
         let product = |before: usize, length: Option<usize>| before.checked_mul(length?);
-        let components = if coordinate.is_rotation { COMPONENTS } else { 1 };
+        let components = if coordinate.space == Space::Rotation { COMPONENTS } else { 1 };
         lengths.into_iter().try_fold(components, product).filter(|length| *length <= COORDINATES)
     });
     lengths.sum::<Option<usize>>().filter(|dimension| *dimension > 0).map(Literal::usize_unsuffixed)

@@ -37,7 +37,7 @@ pub use scale::Scale;
 
 use crate::limits::bounded;
 use crate::messages::{Message, error};
-use crate::model::{LetArray, Model, Role};
+use crate::model::{LetArray, Model, Role, Space};
 use crate::program::Function;
 use crate::rules::NamedRule;
 use crate::symbol::Symbol;
@@ -205,7 +205,7 @@ impl Indexed {
 
     /// The indices of the angles.
     pub(crate) fn angles(&self) -> Vec<usize> {
-        (0..self.model.dimension()).filter(|index| self.model.coordinates[*index].is_angle).collect()
+        (0..self.model.dimension()).filter(|index| self.model.coordinates[*index].space == Space::Circle).collect()
     }
 
     /// Whether steps by a rule are explicit, with a diagonal matrix.

@@ -15,8 +15,7 @@ pub(super) fn text(system: &System) -> String {
     lines.extend(system.constants.iter().map(constant));
     lines.extend(system.parameters.iter().map(parameter));
     for coordinate in &system.coordinates {
-        let word = if coordinate.is_rotation { "rotation" } else { "coord" };
-        lines.push(format!("{word} {}{};", coordinate.name, brackets(&coordinate.lengths)));
+        lines.push(format!("{} {}{};", coordinate.space.word(), coordinate.name, brackets(&coordinate.lengths)));
     }
     lines.extend(system.momenta.iter().map(|of| format!("momentum {} of {};", of.name, of.of)));
     lines.extend(system.functions.iter().map(|of| {

@@ -11,7 +11,7 @@ use super::closed::Closed;
 use super::context::{Clause, Context};
 use super::point::Point;
 use super::rule::Rule;
-use super::{Coordinate, Parameter, Role, probe, slope};
+use super::{Coordinate, Parameter, Role, Space, probe, slope};
 use crate::messages::Message;
 use crate::symbol::{Symbol, Variable};
 use num_traits::{One, Zero};
@@ -35,7 +35,7 @@ pub(super) fn check(
     rule: Option<&Rule>,
     clauses: &[Clause],
 ) {
-    let are_angles: Vec<bool> = coordinates.iter().map(|coordinate| coordinate.is_angle).collect();
+    let are_angles: Vec<bool> = coordinates.iter().map(|coordinate| coordinate.space == Space::Circle).collect();
     if !are_angles.contains(&true) || !context.errors.is_empty() {
         return;
     }

@@ -8,8 +8,8 @@ use super::rotation::{self, COMPONENTS};
 use super::scope::Meaning;
 use super::value::Value;
 use super::{
-    Coordinate, Function, Model, Parameter, Role, Rule, angles, check_state, constraint, first_order, force, function,
-    hamiltonian, indices, lets, mass, rule, smoothness, time_scale, timeless,
+    Coordinate, Function, Model, Parameter, Role, Rule, Space, angles, check_state, constraint, first_order, force,
+    function, hamiltonian, indices, lets, mass, rule, smoothness, time_scale, timeless,
 };
 use crate::limits::{COORDINATES, ENTRIES, PARAMETERS, bounded};
 use crate::messages::{Absence, ArrayMistake, FunctionMistake, Message, error};
@@ -250,14 +250,15 @@ impl Context<'_> {
             self.errors.at(system.span(), &Message::MissingCoordinates);
         }
         let (mut coordinates, mut too_many) = (Vec::new(), None);
-        for syntax::Coordinate { name, lengths, is_angle, is_rotation } in declared {
+        for syntax::Coordinate { name, lengths, space } in declared {
             let first = coordinates.len();
             if lengths.is_empty() && first == COORDINATES {
                 self.declare(name, Meaning::Wrong);
                 too_many = too_many.or(Some(name.span()));
                 continue;
             }
-            let components = if *is_rotation { COMPONENTS } else { 1 };
+            let is_rotation = *space == Space::Rotation;
+            let components = if is_rotation { COMPONENTS } else { 1 };
             let left = (COORDINATES - first.min(COORDINATES)) / components;
             let too_long = |given| Message::Length { given, limit: COORDINATES };
             let Some(mut lengths) = self.lengths(lengths, left, too_long).filter(|_| left > 0) else {
@@ -266,12 +267,7 @@ impl Context<'_> {
             };
             lengths.extend(is_rotation.then_some(COMPONENTS));
             let each = indices(&lengths).into_iter();
-            coordinates.extend(each.map(|indices| Coordinate {
-                name: name.clone(),
-                indices,
-                is_angle: *is_angle,
-                is_rotation: *is_rotation,
-            }));
+            coordinates.extend(each.map(|indices| Coordinate { name: name.clone(), indices, space: *space }));
             let is_one = lengths.is_empty();
             let meaning = if is_one { Meaning::Coordinate(first) } else { Meaning::Coordinates { first, lengths } };
             self.declare(name, meaning);

@@ -22,7 +22,9 @@ use super::scope::{Meaning, Scope};
 use super::singular::is_singular;
 use super::smoothness::{jump, with_conditions};
 use super::value::Value;
-use super::{Constraint, Coordinate, FunctionKind, Model, Parameter, Role, TableKind, indices, mass, mobility, slope};
+use super::{
+    Constraint, Coordinate, FunctionKind, Model, Parameter, Role, Space, TableKind, indices, mass, mobility, slope,
+};
 use crate::limits::bounded;
 use crate::messages::{ConstraintMistake, Errors, Message, bracketed, error};
 use crate::symbol::{Symbol, Variable};
@@ -204,7 +206,7 @@ fn entries(context: &mut Context, closed: &Closed, line: &Definition) -> Result<
 /// ρ atan2(sin(g/ρ), cos(g/ρ)) = 0        g less the nearest multiple of 2πρ, with the gradient of g
 /// ```
 fn modulo_turns(pool: &mut Pool<Symbol>, constraint: &mut Constraint, coordinates: &[Coordinate]) {
-    let are_angles: Vec<bool> = coordinates.iter().map(|coordinate| coordinate.is_angle).collect();
+    let are_angles: Vec<bool> = coordinates.iter().map(|coordinate| coordinate.space == Space::Circle).collect();
     let is_angle = |(term, _): &(Expr, Rational)| match pool.as_symbol(*term) {
         Some(Symbol::Continuous(Variable::Coordinate(index))) => are_angles[*index],
         _ => false,

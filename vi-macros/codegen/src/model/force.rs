@@ -11,7 +11,7 @@ use super::context::Context;
 use super::dissipation;
 use super::scope::{Meaning, Scope};
 use super::value::not_a_number;
-use super::{Coordinate, Parameter, Role, slope};
+use super::{Coordinate, Parameter, Role, Space, slope};
 use crate::messages::{ArrayMistake, ConstraintMistake, Message, error};
 use crate::symbol::{Symbol, Variable};
 use crate::syntax::{Definition, Indices};
@@ -23,7 +23,7 @@ use vi_expr::{Expr, Pool};
 pub(super) fn forces(context: &mut Context, lines: &[Definition], coordinates: &[Coordinate]) -> Vec<Expr> {
     let mut forces: Vec<Option<Expr>> = vec![None; coordinates.len()];
     for line in lines {
-        let is_rotation = coordinates.iter().any(|known| known.is_rotation && known.name == line.name);
+        let is_rotation = coordinates.iter().any(|known| known.space == Space::Rotation && known.name == line.name);
         if is_rotation && has_three_components(context, line) {
             let mistake = ConstraintMistake::ForceOnRotation { name: line.name.to_string() };
             context.errors.at(line.name.span(), &Message::Constraint(mistake));

@@ -10,7 +10,7 @@ use super::legendre::transform;
 use super::lets;
 use super::scope::Meaning;
 use super::value::Value;
-use super::{Coordinate, Parameter, slope};
+use super::{Coordinate, Parameter, Space, slope};
 use crate::limits::bounded;
 use crate::messages::{HamiltonianMistake, Message};
 use crate::symbol::{Symbol, Variable};
@@ -42,7 +42,7 @@ pub(super) fn momenta(context: &mut Context, system: &System, coordinates: &[Coo
         if is_second {
             report(context, momentum.of.span(), HamiltonianMistake::Second { name: of.clone() });
         }
-        if places.iter().any(|place| coordinates[*place].is_rotation) {
+        if places.iter().any(|place| coordinates[*place].space == Space::Rotation) {
             report(context, momentum.of.span(), HamiltonianMistake::OfRotation { name: of });
         }
         let symbols = places.into_iter().map(|place| context.pool.symbol(Symbol::Momentum(place))).collect();
@@ -71,7 +71,7 @@ fn check_clauses(context: &mut Context, system: &System, coordinates: &[Coordina
     let missing = coordinates.iter().zip(given).find(|(_, momentum)| momentum.is_none());
     if let Some((coordinate, _)) = missing.filter(|_| is_known) {
         let name = coordinate.name.to_string();
-        let mistake = if coordinate.is_rotation {
+        let mistake = if coordinate.space == Space::Rotation {
             HamiltonianMistake::OfRotation { name }
         } else {
             HamiltonianMistake::MissingMomentum { name }
@@ -140,7 +140,7 @@ fn canonical(context: &mut Context, system: &System, coordinates: &[Coordinate],
     let momentum = |(Coordinate { name, indices, .. }, place): (&Coordinate, usize)| {
         let of = system.momenta.iter().find(|momentum| momentum.of == *name);
         let name = of.map_or(name, |momentum| &momentum.name).clone();
-        (Coordinate { name, indices: indices.clone(), is_angle: false, is_rotation: false }, dimension + place)
+        (Coordinate { name, indices: indices.clone(), space: Space::Line }, dimension + place)
     };
     let (momenta, places): (Vec<Coordinate>, Vec<usize>) = coordinates.iter().zip(0..).map(momentum).unzip();
     let values: Vec<Expr> =

@@ -49,6 +49,7 @@ pub use table::{Outside, Table, TableKind, Values};
 
 use crate::messages::bracketed;
 use crate::symbol::{LetEntry, Symbol, Variable};
+pub use crate::syntax::Space;
 use proc_macro2::{Ident, Span};
 use vi_expr::{Expr, Node, Pool};
 
@@ -145,10 +146,9 @@ pub struct Coordinate {
     pub name: Ident,
     /// Its indices in an array; none outside.
     pub indices: Vec<usize>,
-    /// Whether L, f and the time scale are 2π-periodic in it, and a run reduces it.
-    pub is_angle: bool,
-    /// Whether it is a component of a rotation.
-    pub is_rotation: bool,
+    /// What it is. L, f and the time scale are 2π-periodic in an angle, and a run reduces it; a rotation has four of
+    /// these coordinates.
+    pub space: Space,
 }
 
 impl Coordinate {

@@ -21,7 +21,7 @@ use super::force::{over, path};
 use super::probe::vanish;
 use super::scope::{Meaning, Scope};
 use super::value::Value;
-use super::{Constraint, Coordinate, Parameter, Role, slope};
+use super::{Constraint, Coordinate, Parameter, Role, Space, slope};
 use crate::messages::{ArrayMistake, ConstraintMistake, Message, error};
 use crate::symbol::{Symbol, Variable};
 use crate::syntax::{Definition, Expression};
@@ -112,7 +112,7 @@ impl Scope {
 
 /// The indices of the first components of the rotations.
 pub(super) fn rotations(coordinates: &[Coordinate]) -> impl Iterator<Item = (usize, &Coordinate)> {
-    let is_first = |(_, of): &(usize, &Coordinate)| of.is_rotation && of.indices.last() == Some(&0);
+    let is_first = |(_, of): &(usize, &Coordinate)| of.space == Space::Rotation && of.indices.last() == Some(&0);
     coordinates.iter().enumerate().filter(is_first)
 }
 
@@ -157,7 +157,7 @@ pub(super) fn torques(
     for line in lines {
         let name = line.name.to_string();
         let lengths = match context.scope.meaning(&name) {
-            Some(Meaning::Coordinates { first, lengths }) if coordinates[*first].is_rotation => {
+            Some(Meaning::Coordinates { first, lengths }) if coordinates[*first].space == Space::Rotation => {
                 Some((*first, lengths.clone()))
             }
             Some(Meaning::Wrong) => continue,

@@ -201,10 +201,31 @@ pub struct Coordinate {
     pub name: Ident,
     /// The lengths of an array, one for each pair of brackets.
     pub lengths: Vec<Expression>,
-    /// Whether it is declared as an `angle`, modulo 2π.
-    pub is_angle: bool,
-    /// Whether it is declared as a `rotation`, with four components.
-    pub is_rotation: bool,
+    /// What it is.
+    pub space: Space,
+}
+
+/// What a coordinate is, by the word that declares it.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Space {
+    /// A number: `coord`.
+    Line,
+    /// An angle modulo 2π: `angle`.
+    Circle,
+    /// An orientation, with four components: `rotation`.
+    Rotation,
+}
+
+impl Space {
+    /// The word that declares it.
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Line => "coord",
+            Self::Circle => "angle",
+            Self::Rotation => "rotation",
+        }
+    }
 }
 
 /// The momentum of a coordinate, or those of an array of coordinates.

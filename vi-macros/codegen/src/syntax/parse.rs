@@ -8,7 +8,7 @@ use super::tokens::{DEPTH, check_rust, has_bracket, name};
 use super::unexpected;
 use super::{
     Check, CheckEntry, Constant, Coordinate, Defining, Definition, Discretization, Expression, INSIDE_BRACKETS,
-    Indices, Kind, Momentum, Parameter, Rule, System, clause_of,
+    Indices, Kind, Momentum, Parameter, Rule, Space, System, clause_of,
 };
 use crate::clause;
 use crate::messages::{ConstraintMistake, Errors, Habit, Message, bounded, error, nearest, words};
@@ -514,7 +514,8 @@ fn parameter(
 /// `x` or `q[8]`, after the word `coord`, `angle` or `rotation`
 fn coordinate(input: ParseStream, word: &Ident) -> Result<Coordinate> {
     let name = name(input)?;
-    Ok(Coordinate { name, lengths: lengths(input)?, is_angle: word == "angle", is_rotation: word == "rotation" })
+    let space = [Space::Circle, Space::Rotation].into_iter().find(|space| word == space.word()).unwrap_or(Space::Line);
+    Ok(Coordinate { name, lengths: lengths(input)?, space })
 }
 
 /// `p of q`, after the word `momentum`
