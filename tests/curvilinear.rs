@@ -137,7 +137,7 @@ fn long_steps_hardly_ever_pass_a_pole() {
             let mut run = start.integrate(Gauss::<STAGES>, h).expect("a start");
             match run.step() {
                 Ok(end) => counts[usize::from(!(0.0..core::f64::consts::PI).contains(&end.q.x))] += 1,
-                Err(StepError::StagesUnsettled { .. } | StepError::TooLong { .. }) => counts[2] += 1,
+                Err(StepError::StagesNotConverged { .. } | StepError::TooLong { .. }) => counts[2] += 1,
                 Err(error) => panic!("{sample}: {error}"),
             }
         }

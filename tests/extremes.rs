@@ -32,7 +32,7 @@ fn an_angle_without_digits_is_no_step() {
         run.set_parameters(|system| system.g = g).expect("parameters");
         let (state, warm) = (run.state(), run.step());
         for outcome in [cold, warm] {
-            assert!(matches!(outcome, Err(StepError::StagesUnsettled { .. })), "g = {g:e}: {outcome:?}");
+            assert!(matches!(outcome, Err(StepError::StagesNotConverged { .. })), "g = {g:e}: {outcome:?}");
         }
         assert_eq!(run.state(), state);
     }

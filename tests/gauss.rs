@@ -372,12 +372,12 @@ fn velocities_whose_terms_cancel_take_no_further_iterations() {
 }
 
 #[test]
-fn stages_that_do_not_settle_are_a_typed_error_and_nothing_is_lost() {
+fn stages_that_do_not_converge_are_a_typed_error_and_nothing_is_lost() {
     let system = DoubleWell::default();
     let state = State::at(&system, 0.3, [3.0], [0.0]);
     let mut run = system.at_state(state).integrate(Gauss::<3>, 2.0).expect("a valid start");
     let error = run.step().expect_err("a step far too long");
-    let StepError::StagesUnsettled { t, h, iterations, stiffness, .. } = error else { panic!("{error}") };
+    let StepError::StagesNotConverged { t, h, iterations, stiffness, .. } = error else { panic!("{error}") };
     assert_eq!((t, h), (0.3, 2.0));
     assert!(iterations > 1 && stiffness > 10.0, "{error}");
     assert_eq!(run.state(), state);
@@ -492,7 +492,7 @@ fn stages_that_leave_the_domain_are_an_error_or_right() {
     let system = Vanishing::default();
     let mut run = system.at(0.0, [1.0], [-2.0]).integrate(Gauss::<3>, 1.0).expect("a valid start");
     let error = run.step().expect_err("the mass vanishes on the way");
-    assert!(matches!(error, StepError::StagesUnsettled { .. } | StepError::NonFinite { .. }), "{error}");
+    assert!(matches!(error, StepError::StagesNotConverged { .. } | StepError::NonFinite { .. }), "{error}");
 }
 
 #[test]
@@ -516,7 +516,7 @@ fn a_step_that_newton_does_not_solve_is_an_error() {
         match run.step() {
             // p1 − p0 = h F at the midpoint, and L_v there is the mean of both.
             Ok(state) => assert!(state.p[0].abs() < 100.0, "{state:?}"),
-            Err(error) => return assert!(matches!(error, StepError::StagesUnsettled { .. }), "{error}"),
+            Err(error) => return assert!(matches!(error, StepError::StagesNotConverged { .. }), "{error}"),
         }
     }
 }

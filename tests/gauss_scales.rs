@@ -73,7 +73,7 @@ fn velocities_that_begin_far_too_large_are_solved_for() {
         ),
     ];
     for outcome in lost {
-        assert!(matches!(outcome, Err(StepError::StagesUnsettled { .. })), "{outcome:?}");
+        assert!(matches!(outcome, Err(StepError::StagesNotConverged { .. })), "{outcome:?}");
     }
 }
 
@@ -81,7 +81,7 @@ fn velocities_that_begin_far_too_large_are_solved_for() {
 fn stages_beyond_the_range_of_numbers_are_no_solution() {
     // The first iteration exceeds 1e308, where the pole has no force: standing still would solve the sums of the step.
     let outcome = first::<_, 1, 3>(Pole::default(), [1e-150], [1e-3], 1e-3);
-    assert!(matches!(outcome, Err(StepError::StagesUnsettled { .. })), "{outcome:?}");
+    assert!(matches!(outcome, Err(StepError::StagesNotConverged { .. })), "{outcome:?}");
     // The force at the node overflows already: no shorter step helps.
     for x in [1e-160, 0.0] {
         let outcome = first::<_, 1, 1>(Pole::default(), [x], [0.0], 1e-3);
@@ -95,7 +95,7 @@ fn stages_that_leave_the_range_of_numbers_change_without_end() {
     let system = vi_systems::FpuChain::default();
     let mut run = system.at(0.0, q, v).integrate(Gauss::<8>, 25.0).expect("a valid start");
     let failure = run.find_map(Result::err);
-    let Some(StepError::StagesUnsettled { change, contraction, .. }) = failure else {
+    let Some(StepError::StagesNotConverged { change, contraction, .. }) = failure else {
         panic!("{failure:?}");
     };
     assert!(change.is_infinite() && contraction.is_infinite(), "{change} {contraction}");

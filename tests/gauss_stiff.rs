@@ -261,7 +261,7 @@ fn stages_that_went_astray_are_not_taken_for_rounding() {
             match run.step() {
                 Ok(state) => worst = worst.max((state.energy(&system).expect("an energy") - energy).abs()),
                 Err(error) => {
-                    assert!(matches!(error, StepError::StagesUnsettled { .. }), "h = {h}: {error}");
+                    assert!(matches!(error, StepError::StagesNotConverged { .. }), "h = {h}: {error}");
                     break;
                 }
             }

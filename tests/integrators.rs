@@ -343,7 +343,7 @@ fn a_shorter_step_passes_the_place_of_an_error() {
     let start = kepler.at(0.0, [1.9, 0.0], [0.0, (0.1_f64 / 1.9).sqrt()]);
     let mut run = start.integrate(Gauss::<8>, 0.5).expect("a start");
     let error = run.until(100.0).expect_err("a pericentre");
-    let StepError::StagesUnsettled { t, h, .. } = error else { panic!("{error}") };
+    let StepError::StagesNotConverged { t, h, .. } = error else { panic!("{error}") };
     assert_eq!((run.step(), run.t(), h), (Err(error), t, 0.5), "the error repeats");
     assert!(run.step_of(0.5).is_err() && run.step() == Err(error), "a failed step changes nothing");
     // The advice: shorter steps, on the same run.

@@ -236,7 +236,7 @@ fn a_solution_beyond_a_fold_is_no_step() {
     ];
     for outcome in outcomes {
         let error = outcome.expect_err("no step");
-        assert!(matches!(error, StepError::TooLong { .. } | StepError::StagesUnsettled { .. }), "{error}");
+        assert!(matches!(error, StepError::TooLong { .. } | StepError::StagesNotConverged { .. }), "{error}");
     }
     let first = step::<4>(0.02, [0.035_100_596_666_863_8, 0.009_288_240_022_556_106], [-7.421_804_610_858_296, 0.0]);
     let Err(StepError::TooLong { longest, .. }) = first else { panic!("{first:?}") };

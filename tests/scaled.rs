@@ -438,5 +438,5 @@ fn invalid_steps_are_rejected_with_their_numbers() {
     assert!(matches!(error, StepError::NonFinite { .. } | StepError::TimeScale { .. }), "{error}");
     // Half a period in one step.
     let error = ends(system.at_state(start).integrate(Gauss::<4>.in_transformed_time(), 40.0).expect("a valid start"));
-    assert!(matches!(error, StepError::StagesUnsettled { .. } | StepError::NonFinite { .. }), "{error}");
+    assert!(matches!(error, StepError::StagesNotConverged { .. } | StepError::NonFinite { .. }), "{error}");
 }

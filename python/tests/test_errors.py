@@ -65,7 +65,7 @@ def test_advice_has_words_of_python(name):
 FAILURES = {
     "NonFinite": lambda: vi.Kepler().integrate([0.0, 0.0], h=0.1).steps(1),
     "Singular": lambda: vi.Pendulum(m=0.0).integrate([1.0], h=0.1),
-    "StagesUnsettled": lambda: vi.Pendulum().integrate([1.0], [50.0], h=50.0).steps(3),
+    "StagesNotConverged": lambda: vi.Pendulum().integrate([1.0], [50.0], h=50.0).steps(3),
     "NotConverged": lambda: vi.Kepler().integrate([0.4, 0.0], [0.0, 2.0], h=0.5, method="fixed").steps(100),
     "NoForwardStep": lambda: vi.DoubleWell().integrate([1.001], h=0.01, method="energy").steps(1000),
     "NoForwardGaussStep": lambda: (

@@ -141,7 +141,7 @@ def test_threads_get_one_class():
         sys.setswitchinterval(interval)
 
 
-@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="reads the memory as Linux tells it")
+@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="reads the memory from /proc")
 def test_systems_that_were_made_and_dropped_take_no_memory():
     def resident():
         return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")

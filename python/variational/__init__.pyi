@@ -106,7 +106,7 @@ class TooLong(StepError):
     h: float
     longest: float
 
-class StagesUnsettled(StepError):
+class StagesNotConverged(StepError):
     """The stages of a Gauss step did not converge."""
 
     t: float

@@ -51,7 +51,7 @@ FIELDS: dict[str, dict[str, str]] = {
         "turn": "float",
     },
     "TooLong": {"t": "float", "h": "float", "longest": "float"},
-    "StagesUnsettled": {
+    "StagesNotConverged": {
         "t": "float", "h": "float", "iterations": "int", "change": "float", "contraction": "float",
         "stiffness": "float",
     },
@@ -99,7 +99,7 @@ ABOUT: dict[str, str] = {
     "StepBounds": "The step that solves the equations is shorter or longer than allowed.",
     "NotConverged": "The Newton iteration ended above the rounding floor.",
     "TooLong": "The step has no solution that continues those of short steps.",
-    "StagesUnsettled": "The stages of a Gauss step did not converge.",
+    "StagesNotConverged": "The stages of a Gauss step did not converge.",
     "TimeScale": "The time scale g of dt = g dτ is not positive, not finite, or too small.",
     "NoTimeScale": "The method steps in transformed time, but the system has no time scale.",
     "NotSeparable": "The motion of the system does not split into kicks and drifts.",
@@ -139,7 +139,7 @@ ADVICE: dict[str, str] = {
     "ShiftTooLarge": "start with h={shorter:.1g} or shorter",
     "NotConverged": "take a step shorter than h={h:.3g}",
     "TooLong": "try h={longest:.3g}",
-    "StagesUnsettled": "take a step shorter than h={h:.3g}",
+    "StagesNotConverged": "take a step shorter than h={h:.3g}",
     "TimeScale": "take a shorter dtau, or write a time_scale that stays well above zero",
     "NoTimeScale": "write the clause `time_scale = …;` in its definition, or use h= in place of dtau=",
     "NotSeparable": 'use method="gauss"',

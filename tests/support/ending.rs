@@ -99,7 +99,7 @@ pub(crate) fn assert_typed(error: StepError) {
         }
         StepError::ShiftTooLarge { t, h, shift, part, size, shorter } => vec![t, h, shift, part, size, shorter],
         // Overflowing stages report infinite numbers.
-        StepError::StagesUnsettled { t, h, .. } | StepError::TimeScale { t, g: h } => vec![t, h],
+        StepError::StagesNotConverged { t, h, .. } | StepError::TimeScale { t, g: h } => vec![t, h],
         StepError::Singular { t, .. } | StepError::NonFinite { t, .. } | StepError::Ambiguous { t } => vec![t],
         other => panic!("an error that this test does not know: {other:?}"),
     };

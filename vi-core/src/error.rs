@@ -122,7 +122,7 @@ pub enum StepError {
         longest: f64,
     },
     /// The stages of a Gauss step converged neither by fixed-point iteration nor by Newton iteration.
-    StagesUnsettled {
+    StagesNotConverged {
         /// Time at which the step begins.
         t: f64,
         /// Length of the step.
@@ -401,7 +401,7 @@ impl fmt::Display for Reason<'_> {
                     "the step from t = {t:.9} is too long: with h = {h:.3e} no solution continues those of short steps"
                 )
             }
-            StepError::StagesUnsettled { t, h, iterations, change, contraction, stiffness } => write!(
+            StepError::StagesNotConverged { t, h, iterations, change, contraction, stiffness } => write!(
                 f,
                 "the Gauss stages did not converge from t = {t:.9} with h = {h:.3e}: update {change:.3e} ulp after {iterations} iterations (contraction {contraction:.2}, estimated h ω ≈ {stiffness:.3e})"
             ),
@@ -566,10 +566,10 @@ impl fmt::Display for StepError {
             Self::NotConverged { h, .. } if *h == 0.0 => {
                 f.write_str("; start from the momenta of a velocity, `system.at(t, q, v)`, or take shorter steps")
             }
-            Self::StagesUnsettled { h, .. } if cfg!(not(feature = "alloc")) => {
+            Self::StagesNotConverged { h, .. } if cfg!(not(feature = "alloc")) => {
                 write!(f, "; take steps shorter than {:.3e}, or enable the feature `alloc` of vi-core", h.abs())
             }
-            Self::NotConverged { h, .. } | Self::StagesUnsettled { h, .. } => {
+            Self::NotConverged { h, .. } | Self::StagesNotConverged { h, .. } => {
                 write!(f, "; take steps shorter than {:.3e}", h.abs())
             }
             Self::TooLong { longest, .. } => write!(f, "; try h = {longest:.3e}"),

@@ -57,7 +57,7 @@ impl StepError {
             Self::NonFinite { expression: None, .. }
             | Self::NotConverged { .. }
             | Self::TooLong { .. }
-            | Self::StagesUnsettled { .. }
+            | Self::StagesNotConverged { .. }
             | Self::NoForwardStep { .. }
             | Self::NoForwardGaussStep { .. }
             | Self::DegenerateStep { .. }

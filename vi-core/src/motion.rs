@@ -46,8 +46,8 @@ pub trait Motion<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
     /// Whether M depends on the parameters only.
     const CONSTANT_MASS: bool;
     /// Whether a coordinate scales the momentum of another one, as r that of φ in polar coordinates: `∂p_φ/∂r` is not
-    /// zero, but `∂p_r/∂φ` and `∂p_φ/∂v_r` are. Gauss steps then evaluate forces at the velocities of
-    /// the momenta. Large systems, whose derivatives are loops, do not tell.
+    /// zero, but `∂p_r/∂φ` and `∂p_φ/∂v_r` are. Gauss steps then evaluate forces at the velocities of the momenta. It is
+    /// false for large systems, whose derivatives are loops.
     const CURVILINEAR: bool = false;
     /// Whether `L_v = M v` with constant M, and neither L_q nor f depends on v. The system is then `q'' = M⁻¹ (L_q +
     /// f)`.

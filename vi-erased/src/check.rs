@@ -124,7 +124,7 @@ pub enum Refusal {
 impl Refusal {
     /// The mistake and its correction, as a line for a user of this interface.
     #[must_use]
-    pub fn told(&self, face: Face) -> String {
+    pub fn message(&self, face: Face) -> String {
         match self {
             Self::Option { option, of } => {
                 let [of, option] = [or(&of.iter().map(|of| face.method(*of)).collect::<Vec<_>>()), face.option(option)];

@@ -35,10 +35,10 @@ fn with(method: Method, change: fn(&mut Plan)) -> Plan {
 /// A plan of a system, and what the command and Python say of it.
 type Case<'a> = (&'a dyn System, Plan, [&'a str; 2]);
 
-fn assert_told(cases: &[Case<'_>]) {
-    for (system, plan, told) in cases {
-        let refusal = check::integrator(*system, plan.clone()).expect_err(told[0]);
-        assert_eq!([Face::Command, Face::Python].map(|face| refusal.told(face)), *told);
+fn assert_messages(cases: &[Case<'_>]) {
+    for (system, plan, messages) in cases {
+        let refusal = check::integrator(*system, plan.clone()).expect_err(messages[0]);
+        assert_eq!([Face::Command, Face::Python].map(|face| refusal.message(face)), *messages);
     }
 }
 
@@ -46,7 +46,7 @@ fn assert_told(cases: &[Case<'_>]) {
 fn options_of_other_methods_are_refused() {
     let pendulum = kind!(Pendulum, { fixed; gauss 4, 8; energy; energy 2 });
     let rod = kind!(RodPendulum, { gauss 1, 3; energy 2 });
-    assert_told(&[
+    assert_messages(&[
         (
             &*pendulum,
             with(Method::Fixed, |plan| plan.start = Start::Points),
@@ -112,7 +112,7 @@ fn an_integrator_that_a_system_lacks_is_told_with_those_that_it_has() {
     let alone = kind!(Alone, { gauss 4, 8; energy 2 });
     let flow = kind!(Flow, { gauss 4 });
     let rod = kind!(RodPendulum, { gauss 1, 3; energy 2 });
-    assert_told(&[
+    assert_messages(&[
         (
             &*pendulum,
             with(Method::Gauss, |plan| plan.dtau = Some(0.1)),
@@ -196,7 +196,7 @@ fn a_plan_gets_the_stages_that_are_built() {
 fn numbers_of_no_run_are_refused() {
     let system = kind!(Kepler, { gauss 4; transformed 4 });
     let plan = || Plan::new(Method::Gauss, 0.1, PhasePoint { t: 0.0, q: vec![1.0, 0.0], v: vec![0.0, 1.0] });
-    let told = |plan: Plan| check::numbers(&*system, &plan).expect_err("a refusal").told(Face::Command);
+    let messages = |plan: Plan| check::numbers(&*system, &plan).expect_err("a refusal").message(Face::Command);
     assert_eq!(check::numbers(&*system, &plan()), Ok(()));
     for (wrong, words) in [
         (Plan { q: vec![1.0], ..plan() }, "Kepler has the coordinates x, y: give as many coordinates (--q), not 1"),
@@ -211,7 +211,7 @@ fn numbers_of_no_run_are_refused() {
         ),
         (Plan { tolerance: Some(0.0), ..plan() }, "the tolerance (--tolerance) must be between an ulp and 1, not 0.0"),
     ] {
-        assert_eq!(told(wrong), words);
+        assert_eq!(messages(wrong), words);
     }
     // A length that another number determines may be missing.
     assert_eq!(check::numbers(&*system, &Plan { h: f64::NAN, tolerance: Some(1e-9), ..plan() }), Ok(()));

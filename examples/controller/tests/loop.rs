@@ -48,7 +48,7 @@ fn without_memory_a_step_that_is_too_long_is_an_error() {
     println!("{outcome:?}");
     #[cfg(not(feature = "std"))]
     assert!(
-        matches!(outcome, Err(StepError::StagesUnsettled { stiffness, .. }) if stiffness.is_finite()),
+        matches!(outcome, Err(StepError::StagesNotConverged { stiffness, .. }) if stiffness.is_finite()),
         "{outcome:?}"
     );
     #[cfg(feature = "std")]

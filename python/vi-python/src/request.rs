@@ -38,7 +38,7 @@ impl Request {
             tolerance: self.tolerance,
             ..Plan::new(method, h, PhasePoint { t, q, v })
         };
-        check::integrator(system, plan).map_err(|refusal| wrong(refusal.told(Face::Python)))
+        check::integrator(system, plan).map_err(|refusal| wrong(refusal.message(Face::Python)))
     }
 }
 
@@ -52,6 +52,6 @@ pub(crate) fn checked(py: Python<'_>, system: &dyn System, plan: Plan) -> PyResu
         Err(Refusal::Number { option, allowed, value, .. }) => {
             Err(exception(py, &StepError::InvalidInput { input: option, allowed, value }))
         }
-        Err(refusal) => Err(wrong(refusal.told(Face::Python))),
+        Err(refusal) => Err(wrong(refusal.message(Face::Python))),
     }
 }

@@ -11,7 +11,7 @@
 use super::equations::{Jacobian, Rows, Scales, expected_sign, signs, stage_velocity, unknowns};
 use super::motion::{Velocity, unsolvable, velocity};
 use super::reduced::Reduced;
-use super::solved::{SETTLED, Solved, contracted};
+use super::solved::{NEARLY_SOLVED, Solved, contracted};
 use super::{bordered, diagonal, is_reduced, is_shortened, reaction_of};
 use crate::error::{Residuals, StepError};
 use crate::kind::Multipliers;
@@ -276,7 +276,7 @@ impl Workspace {
         evaluated: impl Fn(&[f64], Option<&Scales<S, N, STAGES>>) -> Evaluated<S, N, STAGES>,
     ) -> bool {
         let Evaluated { rows, scales, residual } = &*at;
-        let (residual, near) = (*residual, Some(scales).filter(|_| *residual <= SETTLED));
+        let (residual, near) = (*residual, Some(scales).filter(|_| *residual <= NEARLY_SOLVED));
         self.correct(rows);
         // Near the floor a shorter correction changes nothing.
         let halvings = if residual <= FLOOR { 0 } else { HALVINGS };

@@ -7,7 +7,7 @@ const NOISE: f64 = 1e4;
 
 /// From unknowns with a residual up to this to the solution, the terms of the rows hardly change: their scales serve
 /// until then.
-pub(super) const SETTLED: f64 = 1e8;
+pub(super) const NEARLY_SOLVED: f64 = 1e8;
 
 /// A solved step; its unknowns are in the list of the caller.
 pub(crate) struct Solved<const N: usize, M> {

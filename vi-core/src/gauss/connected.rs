@@ -91,7 +91,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
     /// of nearly this length that does, a solution close to it continues them, too.
     ///
     /// # Errors
-    /// [`StepError::StagesUnsettled`], [`StepError::TooLong`], or the reason why the stages have no value.
+    /// [`StepError::StagesNotConverged`], [`StepError::TooLong`], or the reason why the stages have no value.
     #[cold]
     pub(crate) fn recover<Y>(
         &self,

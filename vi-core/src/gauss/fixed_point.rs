@@ -169,7 +169,7 @@ impl Convergence {
         let is_beyond = |ratio: f64| ratio.is_nan() || !increment.is_finite();
         let [change, contraction] =
             [change, contraction].map(|ratio| if is_beyond(ratio) { f64::INFINITY } else { ratio });
-        StepError::StagesUnsettled { t, h, iterations, change, contraction, stiffness }
+        StepError::StagesNotConverged { t, h, iterations, change, contraction, stiffness }
     }
 
     /// Whether the iteration contracted so fast that its solution is the only one near the guess. A guess is close to

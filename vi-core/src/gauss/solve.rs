@@ -241,7 +241,7 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
     /// `last` is the linearization of the previous step, if that had the same length.
     ///
     /// # Errors
-    /// [`StepError::StagesUnsettled`], or the reason why the stages have no value.
+    /// [`StepError::StagesNotConverged`], or the reason why the stages have no value.
     #[cold]
     pub(super) fn recovered<Y>(
         &self,

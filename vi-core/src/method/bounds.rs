@@ -282,7 +282,7 @@ where
     ///
     /// With [`Fallback::FixedSteps`] the errors [`StepError::NoForwardStep`], [`StepError::NoForwardGaussStep`],
     /// [`StepError::DegenerateStep`], [`StepError::StepRatio`], [`StepError::StepBounds`], [`StepError::NotConverged`],
-    /// [`StepError::StagesUnsettled`] and [`StepError::TooLong`] do not end the run. It continues with fixed steps while D has the wrong sign
+    /// [`StepError::StagesNotConverged`] and [`StepError::TooLong`] do not end the run. It continues with fixed steps while D has the wrong sign
     /// or the step law requires longer ones. Then it preserves the previous energy or, if no step has that energy, the
     /// discrete energy of the last fixed step. It also replaces a step that exceeds the last one by more than a factor
     /// of 1.5, because D is about to vanish. [`Run::step_kind`] returns the kind of the last step, and
@@ -418,7 +418,7 @@ pub(super) fn too_long(
         StepError::NoForwardStep { .. }
             | StepError::NoForwardGaussStep { .. }
             | StepError::NotConverged { .. }
-            | StepError::StagesUnsettled { .. }
+            | StepError::StagesNotConverged { .. }
     );
     let [energy, excess] = energies;
     let is_alike = |start: FirstStep| (start.energy - energy).abs() <= ALIKE * excess.abs();

@@ -140,7 +140,7 @@ where
             }
             match steps.step() {
                 Ok(_) => {}
-                Err(StepError::StagesUnsettled { .. } | StepError::TooLong { .. }) => return Ok(None),
+                Err(StepError::StagesNotConverged { .. } | StepError::TooLong { .. }) => return Ok(None),
                 // A constraint turns too far.
                 Err(StepError::NotConverged { turn, .. }) if turn > 0.0 => return Ok(None),
                 Err(failure) => return Err(failure),

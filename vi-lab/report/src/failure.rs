@@ -66,7 +66,7 @@ pub enum Failure {
 impl From<Refusal> for Failure {
     /// A plan that has no run is wrong input.
     fn from(refusal: Refusal) -> Self {
-        Self::Input(refusal.told(Face::Command))
+        Self::Input(refusal.message(Face::Command))
     }
 }
 
@@ -174,7 +174,7 @@ pub fn advice(error: &StepError, plan: &Plan) -> Option<String> {
         (StepError::NotConverged { .. }, Method::Energy) => {
             "use shorter steps with --h, or fixed steps with --method fixed"
         }
-        (StepError::NotConverged { .. } | StepError::StagesUnsettled { .. }, _) => {
+        (StepError::NotConverged { .. } | StepError::StagesNotConverged { .. }, _) => {
             return Some(format!("use shorter steps with {step}"));
         }
         (StepError::TimeScale { .. }, _) => {

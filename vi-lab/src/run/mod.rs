@@ -396,11 +396,11 @@ mod tests {
 
     #[test]
     fn small_errors_of_many_steps_are_a_warning() {
-        let told = |estimate, sum| accuracy(&ErrorEstimate { estimate, t: 2.0, coordinate: 1, sum }, &["x", "y"]);
-        assert_eq!(told(1e-5, 1e-2), "note: the largest error of a step is 0.00001 of the motion of y, at t = 2");
-        let warning = told(1e-5, 0.25);
+        let line = |estimate, sum| accuracy(&ErrorEstimate { estimate, t: 2.0, coordinate: 1, sum }, &["x", "y"]);
+        assert_eq!(line(1e-5, 1e-2), "note: the largest error of a step is 0.00001 of the motion of y, at t = 2");
+        let warning = line(1e-5, 0.25);
         assert!(warning.starts_with("warning: ") && warning.contains("may add up to 0.25 of a motion"), "{warning}");
-        assert!(told(2e-3, 0.25).ends_with("at t = 2; take shorter steps with --h, or --tolerance 1e-9"));
+        assert!(line(2e-3, 0.25).ends_with("at t = 2; take shorter steps with --h, or --tolerance 1e-9"));
     }
 
     /// A run that fails after three steps, at t = 1.5.

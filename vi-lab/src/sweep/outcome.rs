@@ -30,7 +30,7 @@ fn ending(error: StepError) -> &'static str {
         StepError::StepRatio { .. } => "step ratio",
         StepError::StepBounds { .. } => "step bounds",
         StepError::NotConverged { .. } => "not converged",
-        StepError::StagesUnsettled { .. } => "stages unsettled",
+        StepError::StagesNotConverged { .. } => "stages unsettled",
         StepError::TimeScale { .. } => "time scale",
         StepError::Singular { .. } => "singular matrix",
         StepError::NonFinite { .. } | StepError::Undefined { .. } => "not finite",

@@ -228,7 +228,7 @@ mod tests {
             let ended = match run.outcome {
                 Err(Ended::Step(StepError::NoForwardStep { .. })) => true,
                 Err(Ended::Step(StepError::StepRatio { .. })) => run.setting > 0.1,
-                Err(Ended::Step(StepError::StagesUnsettled { .. })) if run.setting > 3.0 => continue,
+                Err(Ended::Step(StepError::StagesNotConverged { .. })) if run.setting > 3.0 => continue,
                 _ => false,
             };
             assert_eq!(ended, run.method == Method::ENERGY, "{run:?}");

@@ -67,7 +67,7 @@ impl Ending {
                 StepError::NoForwardStep { .. } | StepError::NoForwardGaussStep { .. } => NO_FORWARD_STEP,
                 StepError::DegenerateStep { .. } => DEGENERATE_STEP,
                 StepError::StepRatio { .. } => STEP_RATIO,
-                StepError::NotConverged { .. } | StepError::StagesUnsettled { .. } | StepError::TooLong { .. } => {
+                StepError::NotConverged { .. } | StepError::StagesNotConverged { .. } | StepError::TooLong { .. } => {
                     NOT_CONVERGED
                 }
                 StepError::Singular { .. } => SINGULAR,

@@ -16,7 +16,7 @@ mod schur;
 
 use super::diagonal;
 use super::equations::Configuration;
-use super::solved::{SETTLED, Solved, contracted};
+use super::solved::{NEARLY_SOLVED, Solved, contracted};
 use crate::kind::Multipliers;
 use crate::linear::{Rectangular, Row};
 use crate::motion::Motion;
@@ -240,7 +240,7 @@ fn step_of_points<S: Motion<N>, const N: usize, const D: usize>(
 }
 
 /// g/h at the end of a step, in `known`, and A and a there. Returns the largest row over its rounding. The scales are
-/// those of the residual `before` if it is settled.
+/// those of the residual `before` if it is small.
 #[inline(always)]
 fn constraints<S: Motion<N>, const N: usize, const D: usize>(
     system: &S,
@@ -255,7 +255,7 @@ fn constraints<S: Motion<N>, const N: usize, const D: usize>(
         *known = value / h;
     }
     // True at the first residual.
-    if before > SETTLED {
+    if before > NEARLY_SOLVED {
         reduced.scale::<N, D>(q);
     }
     reduced.largest(|terms, rate| terms / h.abs() + rate)

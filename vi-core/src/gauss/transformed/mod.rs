@@ -70,7 +70,7 @@ where
     /// The run after a step, if fixed-point iteration failed or was skipped, or g is not positive.
     ///
     /// # Errors
-    /// [`StepError::StagesUnsettled`], [`StepError::TimeScale`], [`StepError::NonFinite`].
+    /// [`StepError::StagesNotConverged`], [`StepError::TimeScale`], [`StepError::NonFinite`].
     #[cold]
     pub(crate) fn recover(
         self,

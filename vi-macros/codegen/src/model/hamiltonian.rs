@@ -123,7 +123,7 @@ pub(super) fn lagrangian(
                     context.closed(momentum)
                 })
                 .collect();
-            context.scope.settle(context.pool, &momenta);
+            context.scope.substitute_momenta(context.pool, &momenta);
             Some(Transformed { lagrangian, momenta: Vec::new() })
         }
         None if system.is_constrained => {
@@ -145,7 +145,7 @@ fn canonical(context: &mut Context, system: &System, coordinates: &[Coordinate],
     let (momenta, places): (Vec<Coordinate>, Vec<usize>) = coordinates.iter().zip(0..).map(momentum).unzip();
     let values: Vec<Expr> =
         places.iter().map(|place| context.pool.symbol(Symbol::Continuous(Variable::Coordinate(*place)))).collect();
-    context.scope.settle(context.pool, &values);
+    context.scope.substitute_momenta(context.pool, &values);
     let pool = &mut *context.pool;
     let hamiltonian = pool.substitute(hamiltonian, &mut |_, symbol| match symbol {
         Symbol::Momentum(index) => values.get(*index).copied(),

@@ -181,8 +181,8 @@ impl Scope {
     }
 
     /// Gives the momenta their values in all names.
-    pub(super) fn settle(&mut self, pool: &mut Pool<Symbol>, momenta: &[Expr]) {
-        let mut settled = |expr: &mut Expr| {
+    pub(super) fn substitute_momenta(&mut self, pool: &mut Pool<Symbol>, momenta: &[Expr]) {
+        let mut substituted = |expr: &mut Expr| {
             *expr = pool.substitute(*expr, &mut |_, symbol| match symbol {
                 Symbol::Momentum(index) => momenta.get(*index).copied(),
                 _ => None,
@@ -190,12 +190,12 @@ impl Scope {
         };
         for meaning in self.names.values_mut() {
             match meaning {
-                Meaning::Number(value) => settled(value),
-                Meaning::Array(array) => array.each(&mut settled),
+                Meaning::Number(value) => substituted(value),
+                Meaning::Array(array) => array.each(&mut substituted),
                 _ => {}
             }
         }
-        self.kept.iter_mut().flatten().flat_map(|array| &mut array.definitions).for_each(settled);
+        self.kept.iter_mut().flatten().flat_map(|array| &mut array.definitions).for_each(substituted);
     }
 
     /// The number of an evaluation point; equal points have the same number.
