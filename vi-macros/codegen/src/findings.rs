@@ -531,6 +531,10 @@ impl Findings {
             (true, true) => "`L = T(v) + U(t, q)` with a constant mass matrix".to_owned(),
             (true, false) => "`L = T(v) + U(t, q)`; the mass matrix depends on the velocity".to_owned(),
             (false, true) => "The mass matrix is constant".to_owned(),
+            (false, false) if self.curvilinear => {
+                let steps = "Gauss steps evaluate forces at the velocities of the momenta";
+                format!("The mass matrix depends on the state, and a coordinate scales the momentum of another one: {steps}")
+            }
             (false, false) => "The mass matrix depends on the state".to_owned(),
         });
         let in_words = if is_constrained { constrained_smoothness_in_words } else { smoothness_in_words };

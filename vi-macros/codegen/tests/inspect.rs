@@ -36,6 +36,8 @@ fn a_coordinate_may_scale_the_momentum_of_another() {
     // p_y = x² y'.
     assert!(scales("dot(x)^2 + x^2*dot(y)^2"));
     assert!(scales("dot(x)^2/x + x^2*dot(y)^2"));
+    let polar = words("coord r, φ; L = (dot(r)^2 + r^2*dot(φ)^2) / 2; discretize midpoint;");
+    assert!(polar.iter().any(|line| line.contains("forces at the velocities of the momenta")), "{polar:?}");
     // Momenta of both coordinates depend on the other one.
     assert!(!scales("dot(x)^2 + dot(x)*dot(y)*cos(x - y) + dot(y)^2"));
     // The momentum of y has the velocity of x.
