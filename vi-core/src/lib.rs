@@ -34,7 +34,7 @@
 //! | [`motion`] | the equations of motion at one point, for Gauss steps |
 //! | [`constrained`] | systems with constraints, for Gauss–Lobatto steps |
 //! | [`first_order`] | systems whose L is linear in the velocities |
-//! | [`indexed`] | large systems: all their functions from first and second derivatives by loops |
+//! | `indexed` | large systems: all their functions from first and second derivatives by loops |
 //! | [`rules`] | markers of the quadrature rules that `discretize` can name |
 //! | [`state`], [`node`] | states, intervals and steps; nodes with compensated sums |
 //! | [`method`] | the integrators, one file each |
@@ -104,6 +104,7 @@ pub mod first_order;
 mod forward;
 pub mod function;
 pub mod gauss;
+#[doc(hidden)]
 pub mod indexed;
 pub mod kind;
 pub mod lagrangian;
