@@ -12,14 +12,14 @@
 //!
 //! ```text
 //! excursion = largest |q_i − q_i(start)| and |h v_i| so far
-//! reach     = range of the force F_i / largest |∂F_i/∂q_i|, at least a quarter of the largest change of h v_i
+//! reach     = range of the force F_i / largest |∂F_i/∂q_i|, at least a quarter of h times the largest change of v_i
 //! ```
 //!
 //! An error as large as the reach changes the force by as much as it changes along the run. The reach does not depend
-//! on origin and frame, and that of a rotor is one turn. A step cannot resolve less than the change of h v. The
-//! relative error has no unit, so a large coordinate does not hide the error of a small one. A coordinate counts if it
-//! moves by more than [`VISIBLE`] ulps of its own value, and if its `|p_i v_i|` exceeds `(4096 ε)²` of the largest one.
-//! Smaller excursions are rounding errors that the other coordinates cause.
+//! on origin and frame, and that of a rotor is one turn. A step cannot resolve less than the change of v in it, times
+//! h. The relative error has no unit, so a large coordinate does not hide the error of a small one. A coordinate counts
+//! if it moves by more than [`VISIBLE`] ulps of its own value, and if its `|p_i v_i|` exceeds `(4096 ε)²` of the
+//! largest one. Smaller excursions are rounding errors that the other coordinates cause.
 //!
 //! Three further measurements only add to this. A step that changes a conserved H by more than a thousandth of the
 //! energy has at least that error. A half step whose dense output does not begin with the velocity of its node misses
@@ -152,8 +152,8 @@ pub struct ErrorMonitor<M: Method<S, N, T>, S, const N: usize, T: Scalar = f64> 
     /// Largest `|p_i v_i|` and `|h v_i|` of the measured steps.
     action: SVector<f64, N>,
     displacement: SVector<f64, N>,
-    /// `h v` of the first measured step, and the largest difference to it.
-    first_hv: Option<SVector<f64, N>>,
+    /// `h v` and h of the first measured step, and the largest change of v since, times the length of its step.
+    first: Option<(SVector<f64, N>, f64)>,
     deflection: SVector<f64, N>,
     largest: ErrorEstimate,
     /// The errors of all steps of closed windows, added up, and the number of those steps.
@@ -206,7 +206,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
             stretch: Some(Stretch { way: zeros, force_way: zeros, errors: none, times: none }),
             action: none,
             displacement: none,
-            first_hv: None,
+            first: None,
             deflection: none,
             largest: nothing,
             sums: none,
@@ -418,8 +418,11 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     fn add(&mut self, found: &Measurement<N>) {
         self.action = self.action.zip_map(&found.action, f64::max);
         self.displacement = self.displacement.zip_map(&found.hv, |largest, hv| largest.max(hv.abs()));
-        let first = *self.first_hv.get_or_insert(found.hv);
-        self.deflection = self.deflection.zip_map(&(found.hv - first), |largest, hv| largest.max(hv.abs()));
+        if found.h != 0.0 {
+            let (first, h) = *self.first.get_or_insert((found.hv, found.h));
+            let change = found.hv - first * (found.h / h);
+            self.deflection = self.deflection.zip_map(&change, |largest, hv| largest.max(hv.abs()));
+        }
         self.stiffness = self.stiffness.zip_map(&found.stiffness, f64::max);
     }
 

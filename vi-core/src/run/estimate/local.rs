@@ -33,6 +33,8 @@ pub(super) struct Measurement<const N: usize> {
     /// The larger error of q and h·v.
     pub(super) error: SVector<f64, N>,
     pub(super) of: LocalError<N>,
+    /// The length of the step; zero if its error is unknown.
+    pub(super) h: f64,
     /// `h v` and `|p v|` at the end of the step.
     pub(super) hv: SVector<f64, N>,
     pub(super) action: SVector<f64, N>,
@@ -47,7 +49,7 @@ impl<const N: usize> Measurement<N> {
         let infinite = SVector::repeat(f64::INFINITY);
         let of = LocalError { q: infinite, hv: infinite };
         let zeros = SVector::zeros();
-        Self { error: infinite, of, hv: zeros, action: zeros, stiffness: zeros, energy: 0.0 }
+        Self { error: infinite, of, h: 0.0, hv: zeros, action: zeros, stiffness: zeros, energy: 0.0 }
     }
 }
 
@@ -110,7 +112,7 @@ fn compared<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: S
     let stiffness = stiffness(system, after, &hv);
     let energy = energy_error(method, system, [start, (after.state(), v)], action.sum());
     let error = q.zip_map(&error_of_hv, f64::max).zip_map(&unresolved, f64::max);
-    Ok(Measurement { error, of: LocalError { q, hv: error_of_hv }, hv, action, stiffness, energy })
+    Ok(Measurement { error, of: LocalError { q, hv: error_of_hv }, h: length, hv, action, stiffness, energy })
 }
 
 /// For each coordinate, `h |u'(t0) − v0|` of the half step with the dense output u, if that exceeds half of the
