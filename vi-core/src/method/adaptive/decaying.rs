@@ -6,7 +6,7 @@
 //! δ = h |v̇(1) − a| = O(h^(S+1))        |x|² = Σ M_ij x_i x_j
 //! ```
 //!
-//! δ also shows a force between the stages. The first steps have equal lengths until δ falls. Later steps aim at the
+//! δ also shows a force between the stages that lasts about as long as their distance. The first steps have equal lengths until δ falls. Later steps aim at the
 //! largest δ so far: their lengths follow from δ of the last two steps (K. Gustafsson's PI controller: E. Hairer, G.
 //! Wanner, *Solving Ordinary Differential Equations II*, IV.2). A step whose δ is too large is taken again, shorter. A
 //! nearly right length is kept, so that the next step starts from the stages and the linearization of the last one.
@@ -143,9 +143,10 @@ impl Decaying {
         if off <= LARGEST { Ok(law) } else { Err(off) }
     }
 
-    /// The law after a change of the system or of the state.
+    /// The law after a change of the system or of the state, which may make δ larger by any factor: the target is that of
+    /// the steps before, if anything moved.
     pub(super) fn resumed(self) -> Self {
-        Self { off: 1.0, ahead: 1.0, ..self }
+        Self { is_set: self.is_set || self.wanted > 0.0, off: 1.0, ahead: 1.0, ..self }
     }
 
     /// Whether the numbers of a checkpoint are those of a law.

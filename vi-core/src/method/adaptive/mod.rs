@@ -260,8 +260,15 @@ where
         if matches!(change, Change::NewLength) {
             return Ok(memory.clone());
         }
+        // The first length is right for the system and the state before the change. They set the law.
+        let law = memory.law.or_else(|| {
+            let (before, mut cache) = (change.before()?, Self::Cache::default());
+            let prepared = &self.prepare(before, memory.h);
+            let at = Problem { system: before, prepared, node, h: memory.h };
+            first::<S, N, STAGES>(at, memory, &mut cache).ok()?.1.law
+        });
         let steps = solver::<S, N, STAGES>().restarted(system, change, node, memory.h, &memory.steps)?;
-        Ok(Following { steps, law: memory.law.map(Law::resumed), ..*memory })
+        Ok(Following { steps, law: law.map(Law::resumed), ..*memory })
     }
 
     fn dense_output(
