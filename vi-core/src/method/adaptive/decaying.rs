@@ -6,10 +6,11 @@
 //! δ = h |v̇(1) − a| = O(h^(S+1))        |x|² = Σ M_ij x_i x_j
 //! ```
 //!
-//! δ also shows a force between the stages that lasts about as long as their distance. The first steps have equal lengths until δ falls. Later steps aim at the
-//! largest δ so far: their lengths follow from δ of the last two steps (K. Gustafsson's PI controller: E. Hairer, G.
-//! Wanner, *Solving Ordinary Differential Equations II*, IV.2). A step whose δ is too large is taken again, shorter. A
-//! nearly right length is kept, so that the next step starts from the stages and the linearization of the last one.
+//! δ also shows a force between the stages that lasts about as long as their distance. The first steps have equal lengths
+//! until δ falls, or the system or the state changes. Later steps aim at the largest δ so far: their lengths follow from δ
+//! of the last two steps (K. Gustafsson's PI controller: E. Hairer, G. Wanner, *Solving Ordinary Differential Equations
+//! II*, IV.2). A step whose δ is too large is taken again, shorter. A nearly right length is kept, so that the next step
+//! starts from the stages and the linearization of the last one.
 //!
 //! The stages of these steps are solved to a part of a tolerance, if the run has one: nothing is preserved that smaller
 //! errors would break.
