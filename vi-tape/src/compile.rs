@@ -196,10 +196,10 @@ fn called(of: &Derived, tables: &Tables, call: Expr, arguments: usize) -> Option
 
 /// What a coordinate is.
 fn space(of: &Coordinate) -> Space {
-    match (of.space, of.indices.last()) {
-        (model::Space::Circle, _) => Space::Circle,
-        (model::Space::Rotation, Some(component)) => Space::Rotation(*component),
-        _ => Space::Line,
+    match of.component() {
+        Some(component) => Space::Rotation(component),
+        None if of.space == model::Space::Circle => Space::Circle,
+        None => Space::Line,
     }
 }
 

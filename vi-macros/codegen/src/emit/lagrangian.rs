@@ -96,13 +96,10 @@ fn inputs(model: &Model) -> Option<TokenStream> {
 
 /// The constant that says what coordinates are, if not all are numbers.
 fn spaces(model: &Model) -> Option<TokenStream> {
-    let space = |of: &Coordinate| match (of.space, of.indices.last()) {
-        (Space::Circle, _) => quote!(::vi_core::lagrangian::Space::Circle),
-        (Space::Rotation, Some(component)) => {
-            let component = Literal::usize_unsuffixed(*component);
-            quote!(::vi_core::lagrangian::Space::Rotation(#component))
-        }
-        _ => quote!(::vi_core::lagrangian::Space::Line),
+    let space = |of: &Coordinate| match of.component().map(Literal::usize_unsuffixed) {
+        Some(component) => quote!(::vi_core::lagrangian::Space::Rotation(#component)),
+        None if of.space == Space::Circle => quote!(::vi_core::lagrangian::Space::Circle),
+        None => quote!(::vi_core::lagrangian::Space::Line),
     };
     let (dimension, spaces) = (model.dimension(), model.coordinates.iter().map(space));
     let are_lines = model.coordinates.iter().all(|coordinate| coordinate.space == Space::Line);

@@ -152,6 +152,12 @@ pub struct Coordinate {
 }
 
 impl Coordinate {
+    /// Its place in a quaternion, scalar first; `None` outside of a rotation.
+    #[must_use]
+    pub fn component(&self) -> Option<usize> {
+        self.indices.last().copied().filter(|_| self.space == Space::Rotation)
+    }
+
     /// The name as the user writes it: `x`, or `q[3]`.
     #[must_use]
     pub fn text(&self) -> String {

@@ -112,8 +112,7 @@ impl Scope {
 
 /// The indices of the first components of the rotations.
 pub(super) fn rotations(coordinates: &[Coordinate]) -> impl Iterator<Item = (usize, &Coordinate)> {
-    let is_first = |(_, of): &(usize, &Coordinate)| of.space == Space::Rotation && of.indices.last() == Some(&0);
-    coordinates.iter().enumerate().filter(is_first)
+    coordinates.iter().enumerate().filter(|(_, of)| of.component() == Some(0))
 }
 
 /// The symbols of a rotation, or of its rate of change.
