@@ -132,7 +132,7 @@ pub fn solve<T: Real, const N: usize, const M: usize>(
 }
 
 fn is_finite<T: Real, const N: usize, const M: usize>(solution: &SMatrix<T, N, M>) -> bool {
-    solution.iter().all(|entry| entry.is_finite())
+    solution.as_slice().iter().all(|entry| entry.is_finite())
 }
 
 /// Largest allowed ratio of the subtracted terms to a diagonal entry, or of the products in a determinant to the

@@ -91,8 +91,8 @@ pub(super) struct MotionPoint<S: Motion<N>, const N: usize> {
 /// The linear forces at a point.
 struct Forces<M, const N: usize> {
     compliance: Compliance<M, N>,
-    /// K, symmetric, and M⁻¹K.
-    stiffness: [SMatrix<f64, N, N>; 2],
+    /// The symmetric K; M⁻¹K if M is constant.
+    stiffness: SMatrix<f64, N, N>,
     /// `tr((M⁻¹K)²)`
     of_stiffness: f64,
     /// `tr(M⁻¹B M⁻¹Bᵀ)`
@@ -149,9 +149,20 @@ fn compliance<S: Convertible<N>, const N: usize>(
     Some(Compliance::Free(system.point(t, q, v).mass))
 }
 
+/// Whether M⁻¹ is the same at all points.
+fn has_constant_mass<S: Convertible<N>, const N: usize>(system: &S) -> bool {
+    S::Kind::COUNT == 0 && system.has_constant_mass()
+}
+
 /// `tr(XY)` of X = M⁻¹K and Y = M⁻¹Kᵀ. Only rounding can make it negative.
 fn trace<const N: usize>(x: &SMatrix<f64, N, N>, y: &SMatrix<f64, N, N>) -> f64 {
-    x.dot(&y.transpose()).max(0.0)
+    let mut sum = 0.0;
+    for j in 0..N {
+        for i in 0..N {
+            sum += x[(i, j)] * y[(j, i)];
+        }
+    }
+    sum.max(0.0)
 }
 
 impl<M: Matrix<N, f64>, const N: usize> Forces<M, N> {
@@ -160,21 +171,23 @@ impl<M: Matrix<N, f64>, const N: usize> Forces<M, N> {
         let PointDerivatives { momentum_dq, force_dq, force_dv, .. } = system.point_derivatives(t, q, v);
         let mut stiffness = force_dq.dense();
         let compliance = compliance(system, at, &mut stiffness)?;
-        let stiffness = (stiffness + stiffness.transpose()) * 0.5;
+        for j in 0..N {
+            for i in 0..j {
+                let mean = 0.5 * (stiffness[(i, j)] + stiffness[(j, i)]);
+                (stiffness[(i, j)], stiffness[(j, i)]) = (mean, mean);
+            }
+        }
         let response = compliance.times(&stiffness)?;
-        let damping = force_dv.dense() - momentum_dq.dense();
-        let has_damping = damping.iter().any(|entry| *entry != 0.0);
-        let of_damping = if has_damping {
-            trace(&compliance.times(&damping)?, &compliance.times(&damping.transpose())?)
-        } else {
-            0.0
-        };
-        Some(Self {
-            of_stiffness: trace(&response, &response),
-            stiffness: [stiffness, response],
-            compliance,
-            of_damping,
-        })
+        let mut of_damping = 0.0;
+        if !system.is_separable() {
+            let damping = force_dv.dense() - momentum_dq.dense();
+            if damping.as_slice().iter().any(|entry| *entry != 0.0) {
+                of_damping = trace(&compliance.times(&damping)?, &compliance.times(&damping.transpose())?);
+            }
+        }
+        let of_stiffness = trace(&response, &response);
+        let stiffness = if has_constant_mass::<S, N>(system) { response } else { stiffness };
+        Some(Self { of_stiffness, stiffness, compliance, of_damping })
     }
 
     /// (h ω)⁶ without the change of K.
@@ -185,9 +198,8 @@ impl<M: Matrix<N, f64>, const N: usize> Forces<M, N> {
 
     /// `tr((M⁻¹X)²)` of X = K − K' with the mass here, which may be that of all places.
     fn change(&self, other: &Self, has_constant_mass: bool) -> Option<f64> {
-        let [[stiffness, response], [others, other_response]] = [&self.stiffness, &other.stiffness];
-        let change =
-            if has_constant_mass { response - other_response } else { self.compliance.times(&(stiffness - others))? };
+        let change = self.stiffness - other.stiffness;
+        let change = if has_constant_mass { change } else { self.compliance.times(&change)? };
         Some(trace(&change, &change))
     }
 }
@@ -243,7 +255,7 @@ pub(super) fn phase<S: Convertible<N>, const N: usize>(
     }
     let middle = Forces::of(system, (t, &q, &v));
     let (Some(start), Some(middle), Some(end)) = (&start.forces, &middle, &end.forces) else { return Ok(None) };
-    let has_constant_mass = S::Kind::COUNT == 0 && system.has_constant_mass();
+    let has_constant_mass = has_constant_mass::<S, N>(system);
     let powers = [start, middle, end].map(|forces| forces.power(h));
     let per_half = (2.0 * h * h).powi(2);
     let [Some(before), Some(after)] = [start, end].map(|other| middle.change(other, has_constant_mass)) else {

@@ -21,12 +21,12 @@ use crate::first_order;
 use crate::gauss::curvature::curvature;
 use crate::gauss::energies::energies;
 use crate::gauss::fixed_point::{Convergence, Pause, StageIncrement};
-use crate::gauss::general::equations;
+use crate::gauss::general::General;
 use crate::gauss::linearization::LinearizationPoint;
 use crate::gauss::newton::Buffer;
 use crate::gauss::points::{ErasedSystem, follows_momenta};
 use crate::gauss::solve::{StageSolution, Start, Step, constant, iterated, long};
-use crate::gauss::stages::{EXACT, LOOPED, Stages, at};
+use crate::gauss::stages::{EXACT, LOOPED, Stages, at, constant_mass};
 #[cfg(feature = "alloc")]
 use crate::gauss::variation::vary;
 use crate::gauss::{CollocationPolynomial, Slots};
@@ -430,7 +430,10 @@ where
 
     fn velocities(system: &S, memory: &LastStages<N, STAGES>) -> Stages<N, STAGES> {
         let LastStages { before, h, stages, .. } = memory;
-        equations(&ErasedSystem::of(system), before, *h, stages.data.0).velocity()
+        // In the form of the mass matrix: its dense inverse would be a sixth of a step of fourteen coordinates.
+        let (erased, mass) = (ErasedSystem::of(system), constant_mass(system, before));
+        General::<f64, _, _, N, STAGES, false>::new(&erased, mass.as_ref(), (before, *h), stages.data.0, None, None)
+            .velocity()
     }
 
     #[cfg(feature = "alloc")]
