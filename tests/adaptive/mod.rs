@@ -1,0 +1,4 @@
+//! Gauss steps whose length follows the motion.
+
+mod irreversible;
+mod reversible;
