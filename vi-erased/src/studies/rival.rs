@@ -37,7 +37,7 @@ impl fmt::Display for Ended {
         match self {
             Self::Step(error) => error.reason().fmt(f),
             Self::Rival(t, reason) => write!(f, "{reason} at t = {t:.9}"),
-            Self::Short(t) => write!(f, "the run took more than ten times the predicted steps up to t = {t:.9}"),
+            Self::Short(t) => write!(f, "the steps became so short that the run was stopped at t = {t:.9}"),
             Self::NonFinite => f.write_str("a number is not finite at the end"),
         }
     }

@@ -184,13 +184,16 @@ impl Task<'_> {
             return Ok(run.advance_by(self.steps(self.setting))?);
         }
         let steps = self.steps(run.h());
-        run.advance_until(self.end, TOO_MANY * steps)?;
+        let times = if self.method.has_tolerance() { MOST_FOLLOWING } else { TOO_MANY };
+        run.advance_until(self.end, times * steps)?;
         if run.t() < self.end { Err(Ended::Short(run.t())) } else { Ok(()) }
     }
 }
 
 /// A run that finds its lengths is stopped at this multiple of the steps of its initial length.
 const TOO_MANY: u64 = 10;
+/// The same of lengths that follow the motion: the first one may be the longest.
+const MOST_FOLLOWING: u64 = 1000;
 
 /// The methods that run here and integrate the system.
 pub(super) fn methods(system: &dyn System) -> impl Iterator<Item = Method> + '_ {
