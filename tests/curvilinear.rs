@@ -151,6 +151,47 @@ fn long_steps_hardly_ever_pass_a_pole() {
     }
 }
 
+lagrangian! {
+    /// A free particle in polar coordinates.
+    struct Passing {
+        coord r, φ;
+        L = (dot(r)^2 + r^2 * dot(φ)^2) / 2;
+    }
+}
+
+/// A particle turns about the centre before the first stage of a long step. If r changes its sign instead, its place is that
+/// of the motion up to the error of the step.
+#[test]
+fn long_steps_see_a_turn_before_their_first_stage() {
+    fn passes<const STAGES: usize>() -> [u32; 4] {
+        let mut counts = [0; 4];
+        for sample in 0..1500 {
+            let number = |factor: f64| (factor * f64::from(sample)).rem_euclid(1.0);
+            let r = 10.0_f64.powf(-3.0 * number(0.618_033_988));
+            let v = -(10.0_f64).powf(2.0 * number(0.754_877_666) - 1.0);
+            let w = 10.0_f64.powf(4.0 * number(0.569_840_291) - 3.0);
+            let h = 10.0_f64.powf(3.0 * number(0.414_213_562) - 2.0);
+            let mut run = Passing::default().at(0.0, [r, 0.0], [v, w]).integrate(Gauss::<STAGES>, h).expect("a start");
+            match run.step() {
+                Ok(end) => {
+                    let (x, y) = (end.q.x * end.q.y.cos(), end.q.x * end.q.y.sin());
+                    let (off, way) = ((x - r - v * h).hypot(y - r * w * h), (v * h).hypot(r * w * h));
+                    counts[usize::from(end.q.x < 0.0) * (1 + usize::from(off > 0.1 * way))] += 1;
+                }
+                Err(StepError::StagesNotConverged { .. } | StepError::TooLong { .. }) => counts[3] += 1,
+                Err(error) => panic!("{sample}: {error}"),
+            }
+        }
+        println!("{STAGES} stages: {counts:?}");
+        counts
+    }
+    // Of 20 000 samples: 4698 steps and 1154 passes, none far off. With stages that may begin beyond the turn there were 7222
+    // passes and 141 far off, of eight stages 5933 and 232.
+    for [solved, passes, lost, _] in [passes::<4>(), passes::<8>()] {
+        assert!(solved > 300 && passes < 150 && lost == 0, "{solved}, {passes}, {lost}");
+    }
+}
+
 /// The stages of a velocity that grows as t², t³ or faster are not resolved, however short the step.
 #[test]
 fn velocities_grow_slowly_from_rest() {

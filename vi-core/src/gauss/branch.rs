@@ -31,7 +31,7 @@ const MARGIN: f64 = 0.8;
 /// The largest distance from a guess to its solution, relative to the range of the stages.
 pub(crate) const NEAR: f64 = 0.25;
 /// Largest error of a row, in roundings of the largest row of stages.
-const NOISE: f64 = 4096.0;
+pub(crate) const NOISE: f64 = 4096.0;
 /// The largest distance between two results for one solution, relative to the range of the stages.
 pub(crate) const EQUAL: f64 = 1e-6;
 

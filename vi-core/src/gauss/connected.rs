@@ -4,19 +4,20 @@
 //! curvilinear coordinates only an iteration that does not follow momenta proves a step by its contraction.
 //! Other steps are continued from short ones by [`branch::follow`].
 
-use super::branch::{self, EQUAL, FAST, NEAR, Shorter, StepsFromNode, distance, is_resolved};
+use super::branch::{self, EQUAL, FAST, NEAR, NOISE, Shorter, StepsFromNode, distance, is_resolved};
 use super::fixed_point::{Convergence, Equations as _, FEW};
 use super::general::equations;
 use super::linearization::LinearizationPoint;
 use super::newton::Buffer;
 use super::points::{AnyDerivatives, EquationForm, ErasedSystem, Points, follows_momenta};
 use super::solve::{StageSolution, Start, Step, constant};
-use super::stages::{EXACT, Stages, at, stage, time};
+use super::stages::{EXACT, Stages, at, coefficients, stage, time};
 use crate::error::StepError;
+use crate::motion::Point;
 use crate::node::Node;
 use crate::stepping::Convertible;
 use crate::vector;
-use nalgebra::SMatrix;
+use nalgebra::{SMatrix, SVector};
 use vi_dispatch::Instructions;
 
 /// Relative change of the derivatives over a step up to which its equations count as linear, with one solution.
@@ -51,6 +52,33 @@ fn weights<const N: usize, const S: usize>(
     roots.map(|root| if are_forces { root.recip() } else { root }).into()
 }
 
+/// The largest difference between the momenta of a node and those at the start of the polynomials of its step, relative to
+/// the larger ones. Of 160 000 steps in polar coordinates all 2154 with an error of more than a tenth of their way exceeded
+/// it.
+const MISSED: f64 = 0.3;
+
+/// Whether the polynomials of the velocities begin with the momenta of the node. Smooth stages miss what happens before the
+/// first one, such as the turn of a particle that passes closely by a pole of its coordinates.
+fn begins_at_node<const N: usize, const S: usize>(
+    system: &ErasedSystem<'_, N>,
+    node: &Node<N>,
+    stages: &Stages<N, S>,
+) -> bool {
+    // P_k is (−1)^k at the start.
+    let begin = |row: [f64; S]| row.iter().rev().fold(0.0, |sum, coefficient| coefficient - sum);
+    let v = SVector::from(coefficients(stages).map(begin));
+    let Point { momentum, mass, .. } = Points::<N, f64>::at(system, node.t, &node.q, &v);
+    let roots = vector::weights(&mass.diagonal());
+    let most = SVector::from(stages.map(|row| row.iter().fold(0.0_f64, |most, v| most.max(v.abs()))));
+    let rounding = NOISE * f64::EPSILON * most.component_mul(&roots).amax();
+    let is_near = |i: usize| {
+        let missed = (momentum[i] - node.p[i]).abs();
+        let most = node.p[i].abs().max(momentum[i].abs()).max(most[i] * roots[i] * roots[i]);
+        missed <= MISSED * most || missed <= rounding * roots[i]
+    };
+    (0..N).all(is_near)
+}
+
 /// Whether the contraction of its iteration, its stages, or its equations prove that a step continues short ones.
 fn is_proven<const N: usize, const S: usize>(
     system: &ErasedSystem<'_, N>,
@@ -82,7 +110,8 @@ fn lagging<const N: usize, const S: usize>(
         return None;
     }
     let (h, before, accuracy) = (part * start.h, &Convergence::NONE, EXACT);
-    Start { h, stages, are_last: false, before, accuracy, ..*start }.without_momenta(system)
+    let step = Start { h, stages, are_last: false, before, accuracy, ..*start }.without_momenta(system)?;
+    begins_at_node(system, start.node, &step.stages).then_some(step)
 }
 
 impl<const N: usize, const S: usize> Start<'_, N, S> {
