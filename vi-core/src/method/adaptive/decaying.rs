@@ -35,8 +35,7 @@ pub(super) const FEWEST: usize = 3;
 const FELT: f64 = 1e-12;
 const RESOLVED: f64 = 0.1;
 /// The least target, in units of the terms of the velocity. δ contains their roundings: up to 64 ulps of the stage
-/// velocities, of which slopes are a hundred times as large. At 4 % of its target δ leaves the length as it is (`AIM` and
-/// the exponents); below that lengths grow. The error at the end of such a step is a rounding.
+/// velocities, of which slopes are a hundred times as large. The error at the end of such a step is a rounding.
 const ROUNDED: f64 = 1e-10;
 /// The largest δ of an accepted step, in units of the largest δ of the first steps.
 const LARGEST: f64 = 2.0;
@@ -45,6 +44,8 @@ const AIM: f64 = 0.9;
 /// Exponents of the last δ and of the one before, in units of 1/(S + 1).
 const OF_LAST: f64 = 0.7;
 const OF_BEFORE: f64 = 0.4;
+/// The largest δ, in units of the target of roundings, that may be nothing but roundings.
+const LOW: f64 = 1e-2;
 /// The range of the ratio of two lengths, and the range in which the length does not change.
 const RATIOS: [f64; 2] = [0.2, 2.0];
 const KEPT: [f64; 2] = [0.99, 1.2];
@@ -137,9 +138,11 @@ impl Decaying {
             return Ok(Self { wanted: self.wanted.max(size), ..self });
         }
         // After fast modes have died out, the steps of slow ones have to be resolved.
-        let most = self.wanted.min(RESOLVED * velocity).max(ROUNDED * terms);
-        let off = if size == 0.0 { 0.0 } else { size / most };
-        let law = Self { is_set: true, off, ahead: self.ahead::<STAGES>(off), ..self };
+        let most = self.wanted.min(RESOLVED * velocity);
+        let rounded = ROUNDED * terms;
+        let off = if size == 0.0 { 0.0 } else { size / most.max(rounded) };
+        let ahead = self.ahead::<STAGES>(off, most < rounded);
+        let law = Self { is_set: true, off, ahead, ..self };
         // False for NaN.
         if off <= LARGEST { Ok(law) } else { Err(off) }
     }
@@ -157,10 +160,15 @@ impl Decaying {
         are_positive && [wanted, off].iter().all(|number| *number >= 0.0 && number.is_finite())
     }
 
-    /// The next length by δ of the last step and of the one before, divided by the last one.
-    fn ahead<const STAGES: usize>(&self, off: f64) -> f64 {
+    /// The next length by δ of the last step and of the one before, divided by the last one. If the target is that of
+    /// roundings, a δ far below it may be nothing else: it changes by any factor, and no length follows from its change.
+    fn ahead<const STAGES: usize>(&self, off: f64, is_rounded: bool) -> f64 {
         let power = power::<STAGES>();
-        let ratio = AIM * off.powf(-OF_LAST * power) * self.off.powf(OF_BEFORE * power);
+        let ratio = if is_rounded && off < LOW {
+            (AIM * off.powf(-power)).max(1.0)
+        } else {
+            AIM * off.powf(-OF_LAST * power) * self.off.powf(OF_BEFORE * power)
+        };
         // Infinite, or NaN, for a step without a defect.
         let ratio = if off > 0.0 && self.off > 0.0 { ratio } else { f64::INFINITY };
         let [short, long] = KEPT;
