@@ -5,13 +5,13 @@
 //! to velocities that the constraints allow,
 //!
 //! ```text
-//! Ω⁶ = mean of tr((M⁻¹K)²)^(3/2) + tr(M⁻¹B M⁻¹Bᵀ)³ + tr((M⁻¹ΔK/Δt)²)        K symmetrized
+//! Ω⁶ = mean of tr((M⁻¹K)²)^(3/2) + tr(M⁻¹B M⁻¹Bᵀ)³ + tr((M⁻¹ΔK/Δt)²) + tr((M⁻¹ΔM/2Δt)²)³        K symmetrized
 //! ```
 //!
 //! The mean is Simpson's rule over the ends and the middle of the step; the differences are over its halves. Each term
-//! is a sum of squares, and none depends on the choice of coordinates. The differences count where K passes through
-//! zero, as in a pendulum at a right angle. The middle is taken from the cubic through both ends, so that a step and
-//! its reverse have the same phase.
+//! is a sum of squares, which does not depend on the units. The differences of K count where K passes through zero, as in
+//! a pendulum at a right angle; those of M, without constraints, near a pole of the coordinates, which no force shows. The
+//! middle is taken from the cubic through both ends, so that a step and its reverse have the same phase.
 
 #[cfg(feature = "alloc")]
 use crate::constrained::{accelerations, bordered};
@@ -196,11 +196,21 @@ impl<M: Matrix<N, f64>, const N: usize> Forces<M, N> {
         of_stiffness * of_stiffness.sqrt() + of_damping * of_damping * of_damping
     }
 
-    /// `tr((M⁻¹X)²)` of X = K − K' with the mass here, which may be that of all places.
-    fn change(&self, other: &Self, has_constant_mass: bool) -> Option<f64> {
+    /// (h ω)⁶ of the change of K and M to another place, half a step of the length h away, with the mass here, which may be
+    /// that of all places.
+    fn change(&self, other: &Self, h: f64, has_constant_mass: bool) -> Option<f64> {
+        let per_half = (2.0 * h * h).powi(2);
         let change = self.stiffness - other.stiffness;
-        let change = if has_constant_mass { change } else { self.compliance.times(&change)? };
-        Some(trace(&change, &change))
+        if has_constant_mass {
+            return Some(per_half * trace(&change, &change));
+        }
+        let change = self.compliance.times(&change)?;
+        let mut power = per_half * trace(&change, &change);
+        if let [Compliance::Free(mass), Compliance::Free(others)] = [&self.compliance, &other.compliance] {
+            let change = self.compliance.times(&(mass.dense() - others.dense()))?;
+            power += trace(&change, &change).powi(3);
+        }
+        Some(power)
     }
 }
 
@@ -257,11 +267,9 @@ pub(super) fn phase<S: Convertible<N>, const N: usize>(
     let (Some(start), Some(middle), Some(end)) = (&start.forces, &middle, &end.forces) else { return Ok(None) };
     let has_constant_mass = has_constant_mass::<S, N>(system);
     let powers = [start, middle, end].map(|forces| forces.power(h));
-    let per_half = (2.0 * h * h).powi(2);
-    let [Some(before), Some(after)] = [start, end].map(|other| middle.change(other, has_constant_mass)) else {
+    let [Some(before), Some(after)] = [start, end].map(|other| middle.change(other, h, has_constant_mass)) else {
         return Ok(None);
     };
-    let [before, after] = [before * per_half, after * per_half];
     let [start, middle, end] = powers.map(|power| power + least);
     Ok(Phase::of([start + before, middle + 0.5 * (before + after), end + after]))
 }
