@@ -439,12 +439,14 @@ catalogue! {
             { name: "k" };
     MissingCoordinates = "the system has no coordinates", "declare them: `coord x, y;`",
         ["L = 1;"];
-    ForceOnOther { name: String, near: Option<String> } =
+    ForceOnOther { name: String, near: Option<String>, coordinate: String } =
         "`{name}` has a force but is not a coordinate",
-        { did_you_mean(near.as_ref(), "a force acts on a coordinate: `force x = …;`") },
+        { did_you_mean(near.as_ref(), &format!("a force acts on a coordinate: `force {coordinate} = …;`")) },
         ["const N = 2; param m[2] = 1; force «m»[0] = 1; coord x; L = m[0] * dot(x)^2 / 2 - m[1] * x^2;"]
-            { name: "m", near: "" },
-        ["coord x; L = dot(x)^2; force «y» = 1;"] { name: "y", near: "" };
+            { name: "m", near: "", coordinate: "x" },
+        ["coord r[2]; let d = r[0] - r[1]; L = dot(r) * dot(r) / 2 - d^2; force «d» = 1;"]
+            { name: "d", near: "", coordinate: "r[0]" },
+        ["coord x; L = dot(x)^2; force «y» = 1;"] { name: "y", near: "", coordinate: "x" };
     SecondForce { name: String } = "a second force on `{name}`", "add them up in one line",
         ["force r[0] = q; force «r»[0][1] = 1;"] { name: "r" },
         ["force q[0] = 1; force «q»[i in 0..2] = 1;"] { name: "q" }, ["force x = 1; force «x» = 2;"] { name: "x" };

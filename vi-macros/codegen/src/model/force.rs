@@ -22,6 +22,9 @@ use vi_expr::{Expr, Pool};
 /// The force on each coordinate by the `force` lines; zero where none is declared.
 pub(super) fn forces(context: &mut Context, lines: &[Definition], coordinates: &[Coordinate]) -> Vec<Expr> {
     let mut forces: Vec<Option<Expr>> = vec![None; coordinates.len()];
+    // A torque has three numbers, with the name of the rotation.
+    let of_first = |of: &Coordinate| if of.component().is_some() { of.name.to_string() } else { of.text() };
+    let first = coordinates.first().map_or("x".to_owned(), of_first);
     for line in lines {
         let is_rotation = coordinates.iter().any(|known| known.space == Space::Rotation && known.name == line.name);
         if is_rotation && has_three_components(context, line) {
@@ -35,7 +38,7 @@ pub(super) fn forces(context: &mut Context, lines: &[Definition], coordinates: &
                 return Message::Constraint(ConstraintMistake::Force { name });
             }
             let near = context.scope.near_of(context.pool, &name, |known| context.scope.is_coordinate(known));
-            Message::ForceOnOther { name, near }
+            Message::ForceOnOther { name, near, coordinate: first.clone() }
         };
         let Some(values) = values(context, line, coordinates, &on_other) else { continue };
         let exprs = values.iter().map(|(_, value)| *value).collect();
