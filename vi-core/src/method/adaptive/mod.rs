@@ -171,22 +171,19 @@ fn first<S: Convertible<N>, const N: usize, const STAGES: usize>(
     Ok((end, Following { steps, h: *h, law: Some(law), tolerance: *tolerance }))
 }
 
-impl<const STAGES: usize> Adaptive<Gauss<STAGES>> {
-    /// The law of a run that leaves a node by a change or a part of a step. The first length is right for the system and
-    /// the node before: if the run has taken no step, they set the law.
-    fn law_at<S: Convertible<N>, const N: usize>(
-        &self,
-        system: &S,
-        node: &Node<N>,
-        memory: &Following<Steps<S, N, STAGES>>,
-    ) -> Option<Law> {
-        memory.law.or_else(|| {
-            let prepared = &Method::<S, N>::prepare(self, system, memory.h);
-            let at = Problem { system, prepared, node, h: memory.h };
-            let (_, after) = first::<S, N, STAGES>(at, memory, &mut Default::default()).ok()?;
-            after.law.map(Law::resumed)
-        })
-    }
+/// The law of a run that leaves a node by a change or a part of a step. The first length is right for the system and the
+/// node before: if the run has taken no step, they set the law.
+fn law_at<S: Convertible<N>, const N: usize, const STAGES: usize>(
+    system: &S,
+    node: &Node<N>,
+    memory: &Following<Steps<S, N, STAGES>>,
+) -> Option<Law> {
+    memory.law.or_else(|| {
+        let prepared = &solver::<S, N, STAGES>().prepare(system, memory.h);
+        let at = Problem { system, prepared, node, h: memory.h };
+        let (_, after) = first::<S, N, STAGES>(at, memory, &mut Default::default()).ok()?;
+        after.law.map(Law::resumed)
+    })
 }
 
 impl<S, const N: usize, const STAGES: usize> Method<S, N> for Adaptive<Gauss<STAGES>>
@@ -263,7 +260,7 @@ where
         check_step(h)?;
         let before = Solver::<S, N, STAGES>::resized(system, &memory.steps, node, h)?;
         let solver = &memory.solver::<S, N, STAGES>();
-        let law = self.law_at(system, node, memory);
+        let law = law_at::<S, N, STAGES>(system, node, memory);
         let (node, steps) = step_from(solver, system, (node, before), [h, memory.h])?;
         Ok((node, Following { steps, law, ..*memory }))
     }
@@ -280,7 +277,7 @@ where
             return Ok(memory.clone());
         }
         let law = match change.before() {
-            Some(before) => self.law_at(before, node, memory),
+            Some(before) => law_at::<S, N, STAGES>(before, node, memory),
             None => memory.law,
         };
         let steps = solver::<S, N, STAGES>().restarted(system, change, node, memory.h, &memory.steps)?;

@@ -117,6 +117,18 @@ impl<M: Matrix<N, f64>, const N: usize> Compliance<M, N> {
             Self::Bound(compliance) => Some(compliance * x),
         }
     }
+
+    /// `tr((M⁻¹ΔM)²)` of the change of M to another place; zero with constraints.
+    fn change(&self, other: &Self) -> Option<f64> {
+        match (self, other) {
+            (Self::Free(mass), Self::Free(others)) => {
+                let change = self.times(&(mass.dense() - others.dense()))?;
+                Some(trace(&change, &change))
+            }
+            #[cfg(feature = "alloc")]
+            _ => Some(0.0),
+        }
+    }
 }
 
 /// A time, coordinates and velocities.
@@ -187,7 +199,7 @@ impl<M: Matrix<N, f64>, const N: usize> Forces<M, N> {
         }
         let of_stiffness = trace(&response, &response);
         let stiffness = if has_constant_mass::<S, N>(system) { response } else { stiffness };
-        Some(Self { of_stiffness, stiffness, compliance, of_damping })
+        Some(Self { compliance, stiffness, of_stiffness, of_damping })
     }
 
     /// (h ω)⁶ without the change of K.
@@ -205,12 +217,8 @@ impl<M: Matrix<N, f64>, const N: usize> Forces<M, N> {
             return Some(per_half * trace(&change, &change));
         }
         let change = self.compliance.times(&change)?;
-        let mut power = per_half * trace(&change, &change);
-        if let [Compliance::Free(mass), Compliance::Free(others)] = [&self.compliance, &other.compliance] {
-            let change = self.compliance.times(&(mass.dense() - others.dense()))?;
-            power += trace(&change, &change).powi(3);
-        }
-        Some(power)
+        let of_mass = self.compliance.change(&other.compliance)?;
+        Some(per_half * trace(&change, &change) + of_mass.powi(3))
     }
 }
 
