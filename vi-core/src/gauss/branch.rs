@@ -31,7 +31,7 @@ const MARGIN: f64 = 0.8;
 /// The largest distance from a guess to its solution, relative to the range of the stages.
 pub(crate) const NEAR: f64 = 0.25;
 /// Largest error of a row, in roundings of the largest row of stages.
-pub(crate) const NOISE: f64 = 4096.0;
+const NOISE: f64 = 4096.0;
 /// The largest distance between two results for one solution, relative to the range of the stages.
 pub(crate) const EQUAL: f64 = 1e-6;
 
@@ -149,7 +149,10 @@ pub(crate) fn distance<const N: usize, const S: usize>(
 }
 
 /// Rounding of the largest row, weighted.
-fn noise<const N: usize, const S: usize, const K: usize>(stages: [&Stages<N, S>; K], weights: &[f64; N]) -> f64 {
+pub(crate) fn noise<const N: usize, const S: usize, const K: usize>(
+    stages: [&Stages<N, S>; K],
+    weights: &[f64; N],
+) -> f64 {
     let rows = stages.into_iter().flat_map(|stages| stages.iter().zip(weights));
     let sizes = rows.flat_map(|(row, weight)| row.iter().map(move |entry| (entry * weight).abs()));
     NOISE * f64::EPSILON * sizes.fold(0.0, f64::max)

@@ -4,20 +4,21 @@
 //! curvilinear coordinates only an iteration that does not follow momenta proves a step by its contraction.
 //! Other steps are continued from short ones by [`branch::follow`].
 
-use super::branch::{self, EQUAL, FAST, NEAR, NOISE, Shorter, StepsFromNode, distance, is_resolved};
+use super::branch::{self, EQUAL, FAST, NEAR, Shorter, StepsFromNode, distance, is_resolved, noise};
 use super::fixed_point::{Convergence, Equations as _, FEW};
 use super::general::equations;
 use super::linearization::LinearizationPoint;
 use super::newton::Buffer;
 use super::points::{AnyDerivatives, EquationForm, ErasedSystem, Points, follows_momenta};
+use super::polynomial::{polynomials, sum};
 use super::solve::{StageSolution, Start, Step, constant};
-use super::stages::{EXACT, Stages, at, coefficients, stage, time};
+use super::stages::{EXACT, Stages, at, coefficients, maximum, stage, time};
 use crate::error::StepError;
 use crate::motion::Point;
 use crate::node::Node;
 use crate::stepping::Convertible;
 use crate::vector;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SMatrix;
 use vi_dispatch::Instructions;
 
 /// Relative change of the derivatives over a step up to which its equations count as linear, with one solution.
@@ -64,16 +65,13 @@ fn begins_at_node<const N: usize, const S: usize>(
     node: &Node<N>,
     stages: &Stages<N, S>,
 ) -> bool {
-    // P_k is (−1)^k at the start.
-    let begin = |row: [f64; S]| row.iter().rev().fold(0.0, |sum, coefficient| coefficient - sum);
-    let v = SVector::from(coefficients(stages).map(begin));
+    let v = sum(&coefficients(stages), &polynomials(0.0));
     let Point { momentum, mass, .. } = Points::<N, f64>::at(system, node.t, &node.q, &v);
     let roots = vector::weights(&mass.diagonal());
-    let most = SVector::from(stages.map(|row| row.iter().fold(0.0_f64, |most, v| most.max(v.abs()))));
-    let rounding = NOISE * f64::EPSILON * most.component_mul(&roots).amax();
+    let rounding = noise([stages], &roots.into());
     let is_near = |i: usize| {
-        let missed = (momentum[i] - node.p[i]).abs();
-        let most = node.p[i].abs().max(momentum[i].abs()).max(most[i] * roots[i] * roots[i]);
+        let (missed, fastest) = ((momentum[i] - node.p[i]).abs(), maximum(&stages[i].map(f64::abs)));
+        let most = node.p[i].abs().max(momentum[i].abs()).max(fastest * roots[i] * roots[i]);
         missed <= MISSED * most || missed <= rounding * roots[i]
     };
     (0..N).all(is_near)
